@@ -4,7 +4,7 @@ include_guard(GLOBAL)
 include(GNUInstallDirs)
 find_package(Threads REQUIRED)
 
-set(MESO_WARNINGS -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Woverloaded-virtual)
+set(MESO_WARNINGS -Wall -Wextra -Wno-missing-field-initializers -Wpedantic -Wshadow -Wnon-virtual-dtor -Woverloaded-virtual)
 if(MESO_WARNINGS_AS_ERRORS)
   list(APPEND MESO_WARNINGS -Werror)
 endif()
