@@ -21,6 +21,9 @@
 
 namespace meso::brep {
 
+// Surface normals, before `reversed`: a plane's is z; cylinder, cone, sphere and torus point away from their axis,
+// centre or tube; a B-spline's is du x dv.
+
 /// Right-handed local axes: z is the axis of revolution / the plane's normal, x the reference direction (both unit
 /// vectors).
 struct AxisFrame {
@@ -84,7 +87,9 @@ using Curve = std::variant<Line, Circle, Ellipse, BSplineCurve>;
 /// Integer coordinates in the lattice of a template.
 using Index3 = std::array<std::int32_t, 3>;
 
-/// An edge modulo lattice translation. Vertex k of the edge lies in the cell (edge's cell) + vertex_offset[k].
+/// An edge modulo lattice translation: its curve from vertex 0 to vertex 1, in the curve's direction. A closed edge has
+/// the same vertex and offset twice. A B-spline curve ends where its edge ends (it is never trimmed by the vertices).
+/// Vertex k of the edge lies in the cell (edge's cell) + vertex_offset[k].
 struct EdgeTemplate {
   Curve curve;
   std::array<std::uint32_t, 2> vertex{};
@@ -112,16 +117,25 @@ struct Triangulation {
   std::vector<std::array<std::uint32_t, 3>> triangles;  ///< outward (after `reversed`)
 };
 
+/// Integrals over the exact face, n the outward normal, about the template's origin; i = x, y, z. By the divergence
+/// theorem the sums over a closed shell are its area, its volume (each component of volume_moment is one), zero, and
+/// the volume times the centroid. Those of an instance translated by t follow without integrating again.
+struct FaceMoments {
+  double area = 0;       ///< integral of dA
+  Vec3 volume_moment;    ///< integral of p_i n_i dA
+  Vec3 vector_area;      ///< integral of n_i dA
+  Vec3 centroid_moment;  ///< integral of p_i^2 / 2 n_i dA
+};
+
 /// A face modulo lattice translation.
 struct FaceTemplate {
   Surface surface;
-  bool reversed = false;                   ///< material on the side of the surface's own normal
-  std::vector<std::vector<Coedge>> loops;  ///< first one is the outer loop where the surface has one
-  double area = 0;                         ///< mm^2, exact surface
-  double volume_moment = 0;                ///< integral of p.n dA / 3 about the template's origin
-  Vec3 vector_area;                        ///< integral of n dA; gives the moment of a translated instance
-  Vec3 centroid_moment;                    ///< integral of (p_i^2 / 2) n_i dA for i = x, y, z
-  Triangulation mesh;                      ///< filled only when a mesh was asked for
+  bool reversed = false;                   ///< outward is against the surface's own normal
+  std::vector<std::vector<Coedge>> loops;  ///< counter-clockwise about the outward normal (after `reversed`), so two
+                                           ///< faces use a common edge in opposite directions; outer loop first
+  FaceMoments moments;
+  Box3 box;            ///< contains the exact face
+  Triangulation mesh;  ///< filled only when a mesh was asked for
 };
 
 /// Faces, edges and vertices modulo the lattice spanned by `lattice` (columns, millimetres).

@@ -1,0 +1,225 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "face_moments.hpp"
+
+#include <BRepTopAdaptor_FClass2d.hxx>
+#include <BndLib_Add3dCurve.hxx>
+#include <Geom2dAdaptor_Curve.hxx>
+#include <Geom2d_Curve.hxx>
+#include <algorithm>
+#include <numbers>
+
+namespace meso::brep {
+namespace {
+
+// Gauss-Legendre on [-1, 1], 10 points: exact for polynomials to degree 19, and for the trigonometric polynomials of
+// quadrics to 1e-15 over a quarter turn.
+constexpr std::array<double, 5> nodes{0.1488743389816312, 0.4333953941292472, 0.6794095682990244, 0.8650633666889845,
+                                      0.9739065285171717};
+constexpr std::array<double, 5> weights{0.2955242247147529, 0.2692667193099963, 0.2190863625159820, 0.1494513491505806,
+                                        0.0666713443086881};
+
+template <typename Function>
+void gauss(double a, double b, Function f) {
+  const double half = (b - a) / 2, middle = (a + b) / 2;
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    f(middle - half * nodes[i], half * weights[i]);
+    f(middle + half * nodes[i], half * weights[i]);
+  }
+}
+
+constexpr std::size_t component_count = 10;  // area, then volume, vector area and centroid moments by axis
+using Components = std::array<double, component_count>;
+
+Components integrand(const GeomAdaptor_Surface& surface, double u, double v) {
+  gp_Pnt p;
+  gp_Vec du, dv;
+  surface.D1(u, v, p, du, dv);
+  const gp_Vec n = du.Crossed(dv);
+  return {n.Magnitude(),
+          p.X() * n.X(),
+          p.Y() * n.Y(),
+          p.Z() * n.Z(),
+          n.X(),
+          n.Y(),
+          n.Z(),
+          p.X() * p.X() / 2 * n.X(),
+          p.Y() * p.Y() / 2 * n.Y(),
+          p.Z() * p.Z() / 2 * n.Z()};
+}
+
+void add(Components& sum, double factor, const Components& term) {
+  for (std::size_t i = 0; i < component_count; ++i) sum[i] += factor * term[i];
+}
+
+// Where the surface stops being smooth in u: its knots, and quarter turns of the periodic ones.
+std::vector<double> u_breaks(const GeomAdaptor_Surface& surface, double u_min, double u_max) {
+  std::vector<double> breaks{u_min};
+  const auto intervals = surface.NbUIntervals(GeomAbs_CN);
+  TColStd_Array1OfReal knots(1, intervals + 1);
+  surface.UIntervals(knots, GeomAbs_CN);
+  for (const double knot : knots)
+    if (knot > u_min && knot < u_max) breaks.push_back(knot);
+  breaks.push_back(u_max);
+  if (surface.GetType() == GeomAbs_BSplineSurface || surface.GetType() == GeomAbs_Plane) return breaks;
+  std::vector<double> fine;
+  for (std::size_t i = 0; i + 1 < breaks.size(); ++i) {
+    const int pieces = std::max(1, static_cast<int>(std::ceil((breaks[i + 1] - breaks[i]) / (std::numbers::pi / 2))));
+    for (int k = 0; k < pieces; ++k) fine.push_back(breaks[i] + (breaks[i + 1] - breaks[i]) * k / pieces);
+  }
+  fine.push_back(u_max);
+  return fine;
+}
+
+// Green's theorem in parameter space: the integral of f over the face is that of F dv around its boundary, F the
+// integral of f from u_min to u.
+class BoundaryIntegral {
+ public:
+  explicit BoundaryIntegral(const TopoDS_Face& face) : surface_(BRep_Tool::Surface(face)) {
+    double u_min = 0, u_max = 0, v_min = 0, v_max = 0;
+    BRepTools::UVBounds(face, u_min, u_max, v_min, v_max);
+    breaks_ = u_breaks(surface_, u_min, u_max);
+    for (TopExp_Explorer it(face.Oriented(TopAbs_FORWARD), TopAbs_EDGE); it.More(); it.Next())
+      add_edge(TopoDS::Edge(it.Current()), face);
+  }
+  [[nodiscard]] const Components& total() const { return total_; }
+
+ private:
+  void add_edge(const TopoDS_Edge& edge, const TopoDS_Face& face) {
+    double first = 0, last = 0;
+    const Handle(Geom2d_Curve) pcurve =
+        BRep_Tool::CurveOnSurface(edge, TopoDS::Face(face.Oriented(TopAbs_FORWARD)), first, last);
+    if (pcurve.IsNull() || edge.Orientation() == TopAbs_INTERNAL || edge.Orientation() == TopAbs_EXTERNAL) return;
+    const double sign = edge.Orientation() == TopAbs_REVERSED ? -1 : 1;
+    const Geom2dAdaptor_Curve curve(pcurve, first, last);
+    TColStd_Array1OfReal spans(1, curve.NbIntervals(GeomAbs_CN) + 1);
+    curve.Intervals(spans, GeomAbs_CN);
+    for (int i = spans.Lower(); i < spans.Upper(); ++i) add_span(curve, spans(i), spans(i + 1), sign);
+  }
+
+  struct Piece {
+    Components sum{}, magnitude{};
+  };
+
+  void add_span(const Geom2dAdaptor_Curve& curve, double a, double b, double sign) {
+    const Piece whole = integrate(curve, a, b);
+    refine(curve, a, b, whole, sign, 0);
+  }
+
+  // Halving until the halves agree with the whole, relative to what was summed: cancelling sums must not refine for
+  // ever.
+  void refine(const Geom2dAdaptor_Curve& curve, double a, double b, const Piece& whole, double sign, int depth) {
+    const bool flat = std::ranges::all_of(whole.magnitude, [](double m) { return m == 0; });
+    if (flat) return;
+    const double middle = (a + b) / 2;
+    const Piece left = integrate(curve, a, middle), right = integrate(curve, middle, b);
+    bool agrees = true;
+    for (std::size_t i = 0; i < component_count; ++i)
+      agrees = agrees &&
+               std::abs(left.sum[i] + right.sum[i] - whole.sum[i]) <= 1e-12 * (left.magnitude[i] + right.magnitude[i]);
+    if (agrees || depth == 8) {
+      add(total_, sign, left.sum);
+      add(total_, sign, right.sum);
+      return;
+    }
+    refine(curve, a, middle, left, sign, depth + 1);
+    refine(curve, middle, b, right, sign, depth + 1);
+  }
+
+  [[nodiscard]] Piece integrate(const Geom2dAdaptor_Curve& curve, double a, double b) const {
+    Piece piece;
+    gauss(a, b, [&](double t, double weight) {
+      gp_Pnt2d uv;
+      gp_Vec2d tangent;
+      curve.D1(t, uv, tangent);
+      if (tangent.Y() == 0) return;  // along u: dv is zero
+      const Components inner = integrate_u(uv.X(), uv.Y());
+      add(piece.sum, weight * tangent.Y(), inner);
+      for (std::size_t i = 0; i < component_count; ++i) piece.magnitude[i] += std::abs(weight * tangent.Y() * inner[i]);
+    });
+    return piece;
+  }
+
+  [[nodiscard]] Components integrate_u(double u, double v) const {
+    Components sum{};
+    // Pcurves may overshoot the bounds by a rounding error or, in periodic directions, lie beyond; the last span
+    // extends.
+    for (std::size_t i = 0; i + 1 < breaks_.size(); ++i) {
+      const bool last = i + 2 == breaks_.size();
+      const double a = breaks_[i], b = last ? u : std::min(u, breaks_[i + 1]);
+      if (i > 0 && b <= a) break;
+      gauss(a, b, [&](double s, double weight) { add(sum, weight, integrand(surface_, s, v)); });
+    }
+    return sum;
+  }
+
+  GeomAdaptor_Surface surface_;
+  std::vector<double> breaks_;
+  Components total_{};
+};
+
+void extend(Box3& box, const Bnd_Box& other) {
+  if (other.IsVoid()) return;
+  box.extend(to_vec(other.CornerMin()));
+  box.extend(to_vec(other.CornerMax()));
+}
+
+// Points of a sphere or torus where a coordinate is extreme: its normal is along an axis. They bound the face from
+// inside; everything else is extreme on the edges.
+void extend_by_poles(Box3& box, const TopoDS_Face& face, const GeomAdaptor_Surface& surface) {
+  const bool is_sphere = surface.GetType() == GeomAbs_Sphere;
+  const gp_Ax3 frame = is_sphere ? surface.Sphere().Position() : surface.Torus().Position();
+  BRepTopAdaptor_FClass2d classifier(face, 0);
+  for (int axis = 0; axis < 3; ++axis) {
+    const gp_XYZ e(axis == 0, axis == 1, axis == 2);
+    const double x = e.Dot(frame.XDirection().XYZ()), y = e.Dot(frame.YDirection().XYZ()),
+                 z = e.Dot(frame.Direction().XYZ());
+    const double u = std::atan2(y, x), v = std::atan2(z, std::hypot(x, y));
+    const double pi = std::numbers::pi;
+    for (const auto& [pu, pv] :
+         {std::pair{u, v}, std::pair{u + pi, -v}, std::pair{u, pi - v}, std::pair{u + pi, pi + v}}) {
+      if (is_sphere && std::abs(pv) > pi / 2) continue;
+      if (classifier.Perform(gp_Pnt2d(pu, pv)) != TopAbs_OUT) box.extend(to_vec(surface.Value(pu, pv)));
+    }
+  }
+}
+
+}  // namespace
+
+FaceMoments face_moments(const TopoDS_Face& face) {
+  const BoundaryIntegral integral(face);
+  const Components& c = integral.total();
+  // A left-handed surface needs no special case: du x dv is the normal that FORWARD means.
+  const double sign = face.Orientation() == TopAbs_REVERSED ? -1 : 1;
+  return {c[0], sign * Vec3{c[1], c[2], c[3]}, sign * Vec3{c[4], c[5], c[6]}, sign * Vec3{c[7], c[8], c[9]}};
+}
+
+Box3 face_box(const TopoDS_Face& face) {
+  Box3 box;
+  const GeomAdaptor_Surface surface(BRep_Tool::Surface(face));
+  Bnd_Box bounds;
+  switch (surface.GetType()) {
+    case GeomAbs_Plane:
+    case GeomAbs_Cylinder:
+    case GeomAbs_Cone:
+      break;
+    case GeomAbs_Sphere:
+    case GeomAbs_Torus:
+      extend_by_poles(box, face, surface);
+      break;
+    default:
+      BRepBndLib::AddOptimal(face, bounds, Standard_False, Standard_False);
+      extend(box, bounds);
+  }
+  for (TopExp_Explorer it(face, TopAbs_EDGE); it.More(); it.Next()) {
+    const TopoDS_Edge& edge = TopoDS::Edge(it.Current());
+    for (TopExp_Explorer ends(edge, TopAbs_VERTEX); ends.More(); ends.Next())
+      box.extend(to_vec(BRep_Tool::Pnt(TopoDS::Vertex(ends.Current()))));
+    if (BRep_Tool::Degenerated(edge)) continue;
+    Bnd_Box curve_box;
+    BndLib_Add3dCurve::AddOptimal(BRepAdaptor_Curve(edge), 0, curve_box);
+    extend(box, curve_box);
+  }
+  return box;
+}
+
+}  // namespace meso::brep
