@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "meso/render/picture.hpp"
+
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cassert>
+#include <cmath>
+
+#include "camera.hpp"
+#include "light.hpp"
+#include "surface.hpp"
+#include "tracer.hpp"
+
+namespace meso::picture {
+namespace {
+
+std::uint8_t srgb(double linear) {
+  const double c = std::clamp(linear, 0.0, 1.0);
+  const double encoded = c <= 0.0031308 ? 12.92 * c : 1.055 * std::pow(c, 1 / 2.4) - 0.055;
+  return static_cast<std::uint8_t>(std::lround(255 * encoded));
+}
+
+/// Leaves darks and mid-tones as they are and rolls highlights off, so that bright metal keeps its hue.
+double developed(double light) {
+  constexpr double shoulder = 0.7;
+  return light <= shoulder ? light : 1 - (1 - shoulder) * std::exp((shoulder - light) / (1 - shoulder));
+}
+
+Box3 bounds_of(const std::vector<Vec3>& points) {
+  Box3 bounds;
+  for (const Vec3& p : points) bounds.extend(p);
+  return bounds;
+}
+
+struct Scene {
+  Camera camera;
+  Studio studio;
+  const Tracer& tracer;
+};
+
+Color pixel(const Scene& scene, const RenderOptions& options, std::uint32_t x, std::uint32_t y) {
+  Samples samples(x, y);
+  Color sum;
+  const std::uint32_t n = options.samples;
+  for (std::uint32_t i = 0; i < n * n; ++i) {
+    // Correlated rooks: no two rays share a row or a column, so that nearly level edges get n * n shades, not n.
+    const std::uint32_t column = i % n, row = i / n;
+    const double px = x + (column + (row + 0.5) / n) / n, py = y + (row + (n - column - 0.5) / n) / n;
+    const Vec3 direction = scene.camera.ray(px, py);
+    const auto hit = scene.tracer.first_hit(scene.camera.position(), direction);
+    const Color color = hit ? scene.studio.shade(*hit, -direction, samples) : Studio::paper(py / options.height);
+    // Developed one by one: a glint next to paper must not outshine the whole pixel.
+    sum += {developed(color.x), developed(color.y), developed(color.z)};
+  }
+  return sum / (n * n);
+}
+
+}  // namespace
+
+std::optional<Image> draw(const TriangleMesh& mesh, const RenderOptions& options, const RunOptions& run,
+                          DiagnosticSink& sink) {
+  assert(options.width >= 1 && options.width <= 16384 && options.height >= 1 && options.height <= 16384);
+  assert(options.samples >= 1 && options.samples <= 8);
+  run.report("render", 0);
+  const Surface surface(mesh);
+  if (surface.triangles().empty()) {
+    sink.report({.code = Code::render_nothing});
+    return std::nullopt;
+  }
+  const std::optional<Tracer> tracer = Tracer::over(surface);
+  if (!tracer) {
+    sink.report({.code = Code::render_memory, .args = {std::to_string(surface.triangles().size())}});
+    return std::nullopt;
+  }
+  const View view = view_for(options, bounds_of(surface.points()));
+  const Scene scene{Camera(view, surface.points(), options.width, options.height), Studio(view, surface, *tracer),
+                    *tracer};
+
+  Image image{options.width, options.height, {}};
+  image.rgb.resize(std::size_t{3} * options.width * options.height);
+  const auto draw_row = [&](std::uint32_t y) {
+    auto* out = image.rgb.data() + std::size_t{3} * options.width * y;
+    for (std::uint32_t x = 0; x < options.width; ++x) {
+      const Color color = pixel(scene, options, x, y);
+      for (std::size_t i = 0; i < 3; ++i) *out++ = srgb(color[i]);
+    }
+  };
+
+  // Bands of rows, so that progress is told and a stop is asked for from this thread alone.
+  constexpr std::uint32_t band = 16;
+  tbb::task_arena arena(run.jobs == 0 ? tbb::task_arena::automatic : static_cast<int>(run.jobs));
+  for (std::uint32_t y = 0; y < options.height; y += band) {
+    if (run.should_stop()) {
+      sink.report({.code = Code::cancelled});
+      return std::nullopt;
+    }
+    run.report("render", static_cast<double>(y) / options.height);
+    const std::uint32_t end = std::min(y + band, options.height);
+    arena.execute([&] { tbb::parallel_for(y, end, draw_row, tbb::simple_partitioner{}); });
+  }
+  run.report("render", 1);
+  return image;
+}
+
+}  // namespace meso::picture
