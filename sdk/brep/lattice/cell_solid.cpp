@@ -1,0 +1,230 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lattice/cell_solid.hpp"
+
+#include <BOPAlgo_PaveFiller.hxx>
+
+#include "face_moments.hpp"
+#include "lattice/primitive_field.hpp"
+
+namespace meso::brep {
+namespace {
+
+bool on_wall(double value, double low, double high, double tolerance) {
+  return std::fabs(value - low) < tolerance || std::fabs(value - high) < tolerance;
+}
+
+/// The seam goes where the box walls cut the ball anyway: fewer edges, and pieces that can be joined again.
+TopoDS_Shape to_solid(const Ball& ball, const CellShape& cell) {
+  const double tolerance = cell.tolerance();
+  const bool cut_by_x = on_wall(ball.centre.x, cell.box.min.x, cell.box.max.x, tolerance);
+  const bool cut_by_y = on_wall(ball.centre.y, cell.box.min.y, cell.box.max.y, tolerance);
+  const gp_Dir seam = cut_by_x && !cut_by_y ? gp::DY() : gp::DX();
+  return BRepPrimAPI_MakeSphere(gp_Ax2(to_pnt(ball.centre), gp::DZ(), seam), ball.radius).Solid();
+}
+
+/// Struts of neighbouring cells must be split alike, so direction and seam depend on the line, not on how it is
+/// written.
+TopoDS_Shape to_solid(Frustum frustum, const CellShape&) {
+  const auto is_negative = [](Vec3 d, double eps) {
+    for (std::size_t i = 0; i < 3; ++i)
+      if (std::fabs(d[i]) > eps) return d[i] < 0;
+    return false;
+  };
+  const double length = norm(frustum.end - frustum.start);
+  if (is_negative(frustum.end - frustum.start, 1e-9 * length)) {
+    std::swap(frustum.start, frustum.end);
+    std::swap(frustum.start_radius, frustum.end_radius);
+  }
+  const Vec3 axis = (frustum.end - frustum.start) / length;
+  Vec3 seam{};  // in the plane of a box wall where the strut is parallel to one
+  for (std::size_t i = 0; i < 3 && norm(seam) < 0.5; ++i) {
+    Vec3 wall_normal{};
+    wall_normal[i] = 1;
+    if (std::fabs(axis[i]) < 1e-9) seam = cross(axis, wall_normal);
+  }
+  const gp_Ax2 frame = norm(seam) < 0.5 ? gp_Ax2(to_pnt(frustum.start), to_dir(axis))
+                                        : gp_Ax2(to_pnt(frustum.start), to_dir(axis), to_dir(seam));
+  if (std::fabs(frustum.start_radius - frustum.end_radius) < 1e-9 * length)
+    return BRepPrimAPI_MakeCylinder(frame, frustum.start_radius, length).Solid();
+  return BRepPrimAPI_MakeCone(frame, frustum.start_radius, frustum.end_radius, length).Solid();
+}
+
+bool usable(const Ball& ball, double tolerance) { return std::isfinite(norm(ball.centre)) && ball.radius > tolerance; }
+bool usable(const Frustum& frustum, double tolerance) {
+  return std::isfinite(norm(frustum.start)) && norm(frustum.end - frustum.start) > tolerance &&
+         std::isfinite(norm(frustum.end)) && frustum.start_radius >= 0 && frustum.end_radius >= 0 &&
+         std::isfinite(frustum.start_radius) && std::isfinite(frustum.end_radius) &&
+         std::fmax(frustum.start_radius, frustum.end_radius) > tolerance;
+}
+
+TopoDS_Shape fused(const std::vector<TopoDS_Shape>& solids) {
+  if (solids.size() == 1) return solids.front();
+  TopTools_ListOfShape first, rest;
+  for (const TopoDS_Shape& solid : solids) (first.IsEmpty() ? first : rest).Append(solid);
+  BRepAlgoAPI_Fuse fuse;
+  fuse.SetArguments(first);
+  fuse.SetTools(rest);
+  fuse.SetNonDestructive(true);
+  fuse.SetRunParallel(true);
+  fuse.Build();
+  return fuse.HasErrors() ? TopoDS_Shape() : fuse.Shape();
+}
+
+bool contradicts(double a, double b, double scale, double tolerance) {
+  return !(std::fabs(a - b) <= tolerance * scale);
+}
+
+/// Common and Cut from one intersection: what is inside and what is outside must add up to what was there.
+std::optional<TopoDS_Shape> cut_to_box(const TopoDS_Shape& whole, const CellShape& cell) {
+  const TopoDS_Shape box = BRepPrimAPI_MakeBox(to_pnt(cell.box.min), to_pnt(cell.box.max)).Solid();
+  TopTools_ListOfShape arguments, wholes, boxes;
+  wholes.Append(whole);
+  boxes.Append(box);
+  arguments.Append(whole);
+  arguments.Append(box);
+  BOPAlgo_PaveFiller filler;
+  filler.SetArguments(arguments);
+  filler.SetNonDestructive(true);
+  filler.SetRunParallel(true);
+  filler.Perform();
+  if (filler.HasErrors()) return {};
+  BRepAlgoAPI_Common common(whole, box, filler);
+  BRepAlgoAPI_Cut cut(whole, box, filler);
+  if (common.HasErrors() || cut.HasErrors()) return {};
+  const double before = exact_volume(whole), inside = exact_volume(common.Shape()), outside = exact_volume(cut.Shape());
+  if (contradicts(inside + outside, before, before, 1e-6)) return {};
+  return common.Shape();
+}
+
+/// Every corner and edge middle of a right result lies on the surface of the union, or within it on a wall.
+bool on_union(const TopoDS_Shape& solid, const std::vector<CellPrimitive>& primitives, const Box3& box,
+              double tolerance) {
+  const auto agrees = [&](Vec3 p) {
+    const double distance = signed_distance(primitives, p);
+    bool wall = false;
+    for (std::size_t i = 0; i < 3; ++i) wall = wall || on_wall(p[i], box.min[i], box.max[i], tolerance);
+    return wall ? distance < tolerance : std::fabs(distance) < tolerance;
+  };
+  for (TopExp_Explorer it(solid, TopAbs_EDGE); it.More(); it.Next()) {
+    const TopoDS_Edge edge = TopoDS::Edge(it.Current());
+    if (BRep_Tool::Degenerated(edge)) continue;
+    const BRepAdaptor_Curve curve(edge);
+    for (const double at : {0.0, 0.5, 1.0})
+      if (!agrees(to_vec(curve.Value((1 - at) * curve.FirstParameter() + at * curve.LastParameter())))) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+std::optional<CellShape> cell_shape(const LatticeCell& cell, DiagnosticSink& sink) {
+  CellShape shape{.box = cell.box, .solids = {}, .primitives = cell.primitives};
+  try {
+    for (const CellPrimitive& primitive : cell.primitives) {
+      if (!std::visit([&](const auto& p) { return usable(p, shape.tolerance()); }, primitive)) {
+        sink.report({.code = Code::geometry_not_repeatable, .args = {"a ball or strut without extent"}});
+        return {};
+      }
+      shape.solids.push_back(std::visit([&](const auto& p) { return to_solid(p, shape); }, primitive));
+    }
+  } catch (const Standard_Failure& failure) {
+    sink.report({.code = Code::geometry_not_repeatable, .args = {failure.GetMessageString()}});
+    return {};
+  }
+  return shape;
+}
+
+std::vector<Neighbour> reaching_neighbours(const CellShape& cell) {
+  const Vec3 size = cell.size();
+  const double tolerance = cell.tolerance();
+  std::vector<Box3> boxes;
+  Box3 all;
+  for (std::size_t i = 0; i < cell.solids.size(); ++i) {
+    Box3 box;
+    if (cell.primitives.empty()) {
+      for (TopExp_Explorer it(cell.solids[i], TopAbs_FACE); it.More(); it.Next()) {
+        const Box3 face = face_box(TopoDS::Face(it.Current()));
+        box.extend(face.min);
+        box.extend(face.max);
+      }
+    } else {
+      box = bounds(cell.primitives[i]);
+    }
+    boxes.push_back(box);
+    all.extend(box.min);
+    all.extend(box.max);
+  }
+  Index3 low{}, high{};  // shifts under which anything can reach the box
+  for (std::size_t i = 0; i < 3; ++i) {
+    low[i] = static_cast<std::int32_t>(std::ceil((cell.box.min[i] - all.max[i] + tolerance) / size[i]));
+    high[i] = static_cast<std::int32_t>(std::floor((cell.box.max[i] - all.min[i] - tolerance) / size[i]));
+  }
+  std::vector<Neighbour> neighbours;
+  for (std::int32_t x = low[0]; x <= high[0]; ++x)
+    for (std::int32_t y = low[1]; y <= high[1]; ++y)
+      for (std::int32_t z = low[2]; z <= high[2]; ++z) {
+        if (x == 0 && y == 0 && z == 0) continue;
+        const Vec3 by{x * size.x, y * size.y, z * size.z};
+        Neighbour neighbour{.shift = {x, y, z}, .solids = {}};
+        for (std::size_t s = 0; s < cell.solids.size(); ++s) {
+          bool reaches = true;
+          for (std::size_t i = 0; i < 3; ++i)
+            reaches = reaches && boxes[s].min[i] + by[i] < cell.box.max[i] - tolerance &&
+                      boxes[s].max[i] + by[i] > cell.box.min[i] + tolerance;
+          if (reaches && !cell.primitives.empty())
+            reaches = !covered(translated(cell.primitives[s], by), cell.primitives, cell.box);
+          if (reaches) neighbour.solids.push_back(s);
+        }
+        if (!neighbour.solids.empty()) neighbours.push_back(neighbour);
+      }
+  return neighbours;
+}
+
+std::optional<TopoDS_Shape> solid_in_box(const CellShape& cell, const std::vector<Neighbour>& neighbours,
+                                         std::uint64_t present, DiagnosticSink& sink) {
+  const Vec3 size = cell.size();
+  std::vector<TopoDS_Shape> solids;
+  std::vector<CellPrimitive> primitives;
+  const auto add = [&](std::size_t index, Vec3 by) {
+    gp_Trsf move;
+    move.SetTranslation(gp_Vec(by.x, by.y, by.z));
+    solids.push_back(cell.solids[index].Moved(TopLoc_Location(move)));
+    if (!cell.primitives.empty()) primitives.push_back(translated(cell.primitives[index], by));
+  };
+  for (std::size_t i = 0; i < cell.solids.size(); ++i) add(i, {});
+  for (std::size_t n = 0; n < neighbours.size(); ++n) {
+    if (!(present >> n & 1)) continue;
+    const Index3& shift = neighbours[n].shift;
+    for (const std::size_t i : neighbours[n].solids) add(i, {shift[0] * size.x, shift[1] * size.y, shift[2] * size.z});
+  }
+  if (solids.empty()) return TopoDS_Shape();
+  const char* fault = nullptr;
+  try {
+    const TopoDS_Shape whole = fused(solids);
+    const std::optional<TopoDS_Shape> inside = whole.IsNull() ? std::nullopt : cut_to_box(whole, cell);
+    if (!inside) {
+      fault = "the unit cell cannot be cut to its box";
+    } else if (!primitives.empty()) {
+      const double volume = exact_volume(*inside), box_volume = size.x * size.y * size.z;
+      if (!on_union(*inside, primitives, cell.box, cell.tolerance()) ||
+          contradicts(volume, sampled_volume(primitives, cell.box), box_volume, 2e-3))
+        fault = "the fused unit cell is not the union of its balls and struts";
+    }
+    if (!fault) return *inside;
+  } catch (const Standard_Failure&) {
+    fault = "the unit cell cannot be fused";
+  }
+  sink.report({.code = Code::geometry_not_repeatable, .args = {fault}});
+  return {};
+}
+
+double exact_volume(const TopoDS_Shape& shape) {
+  double volume = 0;
+  for (TopExp_Explorer it(shape, TopAbs_FACE); it.More(); it.Next()) {
+    const Vec3 moment = face_moments(TopoDS::Face(it.Current())).volume_moment;
+    volume += (moment.x + moment.y + moment.z) / 3;
+  }
+  return volume;
+}
+
+}  // namespace meso::brep

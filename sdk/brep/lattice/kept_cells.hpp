@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// The cells of a lattice that lie in the body, numbered in lexicographic order of their indices. Private.
+
+#include <cstdint>
+#include <vector>
+
+#include "meso/brep/lattice_body.hpp"
+
+namespace meso::brep {
+
+class KeptCells {
+ public:
+  static constexpr std::uint32_t none = ~std::uint32_t{0};
+
+  /// Asks `set.inside` once for every index of the range.
+  explicit KeptCells(const LatticeSet& set) : min_(set.min), max_(set.max) {
+    for (std::size_t i = 0; i < 3; ++i) extent_[i] = static_cast<std::size_t>(std::max(0, max_[i] - min_[i] + 1));
+    numbers_.assign(extent_[0] * extent_[1] * extent_[2], none);
+    std::size_t slot = 0;
+    for (Index3 cell = min_; cell[0] <= max_[0]; ++cell[0])
+      for (cell[1] = min_[1]; cell[1] <= max_[1]; ++cell[1])
+        for (cell[2] = min_[2]; cell[2] <= max_[2]; ++cell[2], ++slot) {
+          if (!set.inside(cell)) continue;
+          numbers_[slot] = static_cast<std::uint32_t>(cells_.size());
+          cells_.push_back(cell);
+        }
+  }
+
+  [[nodiscard]] bool in_range(const Index3& cell) const {
+    for (std::size_t i = 0; i < 3; ++i)
+      if (cell[i] < min_[i] || cell[i] > max_[i]) return false;
+    return true;
+  }
+  /// `none` where the cell is not kept.
+  [[nodiscard]] std::uint32_t number(const Index3& cell) const {
+    if (!in_range(cell)) return none;
+    const auto at = [&](std::size_t i) { return static_cast<std::size_t>(cell[i] - min_[i]); };
+    return numbers_[(at(0) * extent_[1] + at(1)) * extent_[2] + at(2)];
+  }
+  [[nodiscard]] const Index3& cell(std::uint32_t number) const { return cells_[number]; }
+  [[nodiscard]] std::uint32_t count() const { return static_cast<std::uint32_t>(cells_.size()); }
+
+ private:
+  Index3 min_, max_;
+  std::array<std::size_t, 3> extent_{};
+  std::vector<std::uint32_t> numbers_;
+  std::vector<Index3> cells_;
+};
+
+}  // namespace meso::brep

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lattice/orbit_matcher.hpp"
+
+#include <GeomAPI_ProjectPointOnCurve.hxx>
+
+#include "geometry_values.hpp"
+#include "meso/brep/instance_map.hpp"
+#include "meso/brep/placement.hpp"
+
+namespace meso::brep {
+namespace {
+
+constexpr int sample_count = 32;
+
+Index3 minus(const Index3& a, const Index3& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
+
+std::vector<Vec3> points_along(const TopoDS_Edge& edge) {
+  const BRepAdaptor_Curve curve(edge);
+  std::vector<Vec3> points;
+  for (int i = 0; i < sample_count; ++i) {
+    const double t = (i + 0.5) / sample_count;
+    points.push_back(to_vec(curve.Value((1 - t) * curve.FirstParameter() + t * curve.LastParameter())));
+  }
+  return points;
+}
+
+/// Whether `p` is on the edge, and whether its direction there agrees with `along`.
+struct OnEdge {
+  bool on = false, same_direction = false;
+};
+OnEdge on_edge(const TopoDS_Edge& edge, Vec3 p, Vec3 along, double tolerance) {
+  double first = 0, last = 0;
+  const Handle(Geom_Curve) curve = BRep_Tool::Curve(edge, first, last);
+  const GeomAPI_ProjectPointOnCurve foot(to_pnt(p), curve, first, last);
+  if (foot.NbPoints() == 0 || foot.LowerDistance() > tolerance) return {};
+  gp_Pnt at;
+  gp_Vec tangent;
+  curve->D1(foot.LowerDistanceParameter(), at, tangent);
+  return {.on = true, .same_direction = dot(to_vec(tangent.XYZ()), along) > 0};
+}
+
+}  // namespace
+
+OrbitMatcher::VertexMatch OrbitMatcher::match_vertex(Vec3 p) {
+  VertexMatch found;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const double size = geometry_.lattice(i, i);
+    found.offset[i] = static_cast<std::int32_t>(std::floor((p[i] - origin_[i] + tolerance_) / size));
+  }
+  const Vec3 home = p - cell_origin(geometry_, found.offset);
+  for (std::size_t v = 0; v < geometry_.vertices.size(); ++v) {
+    if (norm(geometry_.vertices[v] - home) > tolerance_) continue;
+    found.vertex = static_cast<std::uint32_t>(v);
+    return found;
+  }
+  found.vertex = static_cast<std::uint32_t>(geometry_.vertices.size());
+  geometry_.vertices.push_back(home);
+  return found;
+}
+
+OrbitMatcher::Match OrbitMatcher::match(const TopoDS_Edge& oriented) {
+  const TopoDS_Edge edge = TopoDS::Edge(oriented.Oriented(TopAbs_FORWARD));
+  const VertexMatch start = match_vertex(to_vec(BRep_Tool::Pnt(TopExp::FirstVertex(edge))));
+  const VertexMatch end = match_vertex(to_vec(BRep_Tool::Pnt(TopExp::LastVertex(edge))));
+  const std::vector<Vec3> points = points_along(edge);
+  const Vec3 middle = points[sample_count / 2];
+  const Vec3 along = points[sample_count / 2 + 1] - points[sample_count / 2 - 1];
+  auto& candidates = edges_[std::minmax(start.vertex, end.vertex)];
+  for (const std::uint32_t candidate : candidates) {
+    const EdgeTemplate& other = geometry_.edges[candidate];
+    for (const bool flipped : {false, true}) {
+      const std::size_t k = flipped ? 1 : 0;
+      if (other.vertex[k] != start.vertex || other.vertex[1 - k] != end.vertex) continue;
+      const Index3 offset = minus(start.offset, other.vertex_offset[k]);
+      if (minus(end.offset, other.vertex_offset[1 - k]) != offset) continue;
+      const Vec3 shift = cell_origin(geometry_, offset);
+      const OnEdge hit = on_edge(shapes_[candidate], middle - shift, along, 4 * tolerance_);
+      if (!hit.on || hit.same_direction == flipped) continue;
+      const auto lies_on = [&](Vec3 p) { return on_edge(shapes_[candidate], p - shift, along, 4 * tolerance_).on; };
+      if (lies_on(points[sample_count / 5]) && lies_on(points[sample_count * 4 / 5]))
+        return {candidate, offset, flipped};
+    }
+  }
+  const auto fresh = static_cast<std::uint32_t>(geometry_.edges.size());
+  double first = 0, last = 0;
+  const Handle(Geom_Curve) curve = BRep_Tool::Curve(edge, first, last);
+  geometry_.edges.push_back({.curve = to_curve(curve, first, last),
+                             .vertex = {start.vertex, end.vertex},
+                             .vertex_offset = {start.offset, end.offset},
+                             .degenerate = false});
+  samples_.push_back(points);
+  shapes_.push_back(edge);
+  candidates.push_back(fresh);
+  return {fresh, {}, false};
+}
+
+OrbitMatcher::Match OrbitMatcher::add_degenerate(const TopoDS_Edge& edge) {
+  const VertexMatch pole = match_vertex(to_vec(BRep_Tool::Pnt(TopExp::FirstVertex(edge))));
+  const auto fresh = static_cast<std::uint32_t>(geometry_.edges.size());
+  geometry_.edges.push_back({.curve = Line{},
+                             .vertex = {pole.vertex, pole.vertex},
+                             .vertex_offset = {pole.offset, pole.offset},
+                             .degenerate = true});
+  samples_.emplace_back();
+  shapes_.push_back(edge);
+  return {fresh, {}, false};
+}
+
+}  // namespace meso::brep

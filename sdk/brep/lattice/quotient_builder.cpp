@@ -1,0 +1,255 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lattice/quotient_builder.hpp"
+
+#include <map>
+
+#include "face_moments.hpp"
+#include "lattice/natural_faces.hpp"
+#include "lattice/orbit_matcher.hpp"
+#include "lattice/template_mesh.hpp"
+#include "meso/brep/instance_map.hpp"
+#include "shape_to_body.hpp"
+
+namespace meso::brep {
+namespace {
+
+TopoDS_Shell all_faces(const TopoDS_Shape& solid) {
+  TopoDS_Shell shell;
+  BRep_Builder builder;
+  builder.MakeShell(shell);
+  for (TopExp_Explorer it(solid, TopAbs_FACE); it.More(); it.Next()) builder.Add(shell, it.Current());
+  return shell;
+}
+
+class Builder {
+ public:
+  Builder(const CellShape& cell, Quotient& quotient)
+      : cell_(cell),
+        quotient_(quotient),
+        geometry_(*quotient.geometry),
+        matcher_(geometry_, quotient.samples, cell.box.min, cell.tolerance()) {}
+
+  /// Matches the edges; false if the solid is not closed in itself.
+  bool add_kind(const TopoDS_Shape& solid, std::uint64_t present);
+  void add_meshes(const MeshFineness& fineness);
+  void add_faces();
+
+ private:
+  struct Source {
+    TopoDS_Shell shell;
+    TopTools_IndexedMapOfShape edges;  // in the order of shell_to_template
+    std::vector<OrbitMatcher::Match> matches;
+    std::vector<std::uint32_t> face_lumps;
+  };
+
+  [[nodiscard]] bool on_wall(Vec3 p, std::size_t axis, int side) const {
+    return std::fabs(p[axis] - (side ? cell_.box.max : cell_.box.min)[axis]) < 4 * cell_.tolerance();
+  }
+  [[nodiscard]] bool on_boundary(const TopoDS_Edge& edge) const;
+  void classify(CellFace& face, const FaceTemplate& value, const TopoDS_Face& shape) const;
+  std::uint32_t wall_orbit(const CellFace& face, const FaceTemplate& value);
+  bool find_clusters(CellKind& kind, const std::vector<std::uint32_t>& face_lumps);
+
+  const CellShape& cell_;
+  Quotient& quotient_;
+  Template& geometry_;
+  OrbitMatcher matcher_;
+  std::vector<Source> sources_;
+  std::vector<bool> boundary_;  // per edge of the template
+  std::map<std::vector<std::int32_t>, std::uint32_t> wall_orbits_;
+  bool with_mesh_ = false;
+
+ public:
+  bool closed = true;
+};
+
+bool Builder::on_boundary(const TopoDS_Edge& edge) const {
+  const BRepAdaptor_Curve curve(edge);
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    for (const int side : {0, 1}) {
+      bool all = true;
+      for (int k = 0; k <= 4; ++k) {
+        const double t = k / 4.0;
+        const gp_Pnt p = curve.Value((1 - t) * curve.FirstParameter() + t * curve.LastParameter());
+        all = all && on_wall(to_vec(p), axis, side);
+      }
+      if (all) return true;
+    }
+  return false;
+}
+
+bool Builder::add_kind(const TopoDS_Shape& solid, std::uint64_t present) {
+  CellKind& kind = quotient_.kinds.emplace_back();
+  kind.present = present;
+  Source& source = sources_.emplace_back();
+  source.shell = all_faces(solid);
+  for (TopExp_Explorer lump(solid, TopAbs_SOLID); lump.More(); lump.Next(), ++kind.lumps)
+    for (TopExp_Explorer it(lump.Current(), TopAbs_FACE); it.More(); it.Next()) source.face_lumps.push_back(kind.lumps);
+  TopExp::MapShapes(source.shell, TopAbs_EDGE, source.edges);
+  for (int i = 1; i <= source.edges.Extent(); ++i) {
+    const TopoDS_Edge& edge = TopoDS::Edge(source.edges(i));
+    const bool degenerate = BRep_Tool::Degenerated(edge);
+    source.matches.push_back(degenerate ? matcher_.add_degenerate(edge) : matcher_.match(edge));
+    const std::uint32_t orbit = source.matches.back().edge;
+    if (boundary_.size() <= orbit) boundary_.resize(orbit + 1);
+    if (!degenerate && on_boundary(edge)) {
+      boundary_[orbit] = true;
+      kind.boundary_edges.push_back({orbit, source.matches.back().offset});
+    }
+  }
+  std::size_t faces = 0;
+  for (TopExp_Explorer it(source.shell, TopAbs_FACE); it.More(); it.Next()) ++faces;
+  return source.face_lumps.size() == faces;  // every face bounds one solid
+}
+
+void Builder::add_meshes(const MeshFineness& fineness) {
+  std::vector<TemplateEdges> edges;
+  for (const Source& source : sources_) edges.push_back({source.shell, source.edges, source.matches});
+  mesh_alike(edges, fineness);
+  with_mesh_ = true;
+}
+
+void Builder::classify(CellFace& face, const FaceTemplate& value, const TopoDS_Face& shape) const {
+  if (!std::holds_alternative<Plane>(value.surface)) return;
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    for (const int side : {0, 1}) {
+      if (!on_wall(side ? value.box.min : value.box.max, axis, side)) continue;
+      bool all = true;
+      for (TopExp_Explorer it(shape, TopAbs_VERTEX); it.More(); it.Next())
+        all = all && on_wall(to_vec(BRep_Tool::Pnt(TopoDS::Vertex(it.Current()))), axis, side);
+      if (!all || std::fabs(std::fabs(value.moments.vector_area[axis]) / value.moments.area - 1) > 1e-9) continue;
+      face.axis = static_cast<int>(axis);
+      face.side = side;
+    }
+}
+
+/// Two walls are one region if they have the same edges, seen from the cell on the high side of the plane.
+std::uint32_t Builder::wall_orbit(const CellFace& face, const FaceTemplate& value) {
+  std::vector<std::array<std::int32_t, 4>> edges;
+  for (const auto& loop : value.loops)
+    for (const Coedge& use : loop) {
+      Index3 offset = use.offset;
+      offset[static_cast<std::size_t>(face.axis)] -= face.side;
+      edges.push_back({static_cast<std::int32_t>(use.edge), offset[0], offset[1], offset[2]});
+    }
+  std::sort(edges.begin(), edges.end());
+  std::vector<std::int32_t> key{face.axis};
+  for (const auto& edge : edges) key.insert(key.end(), edge.begin(), edge.end());
+  return wall_orbits_.emplace(key, static_cast<std::uint32_t>(wall_orbits_.size())).first->second;
+}
+
+void Builder::add_faces() {
+  for (std::size_t k = 0; k < sources_.size(); ++k) {
+    const Source& source = sources_[k];
+    CellKind& kind = quotient_.kinds[k];
+    Template own = shell_to_template(source.shell, with_mesh_);
+    std::size_t index = 0;
+    for (TopExp_Explorer it(source.shell, TopAbs_FACE); it.More(); it.Next(), ++index) {
+      FaceTemplate& value = own.faces[index];
+      for (auto& loop : value.loops)
+        for (Coedge& use : loop) {
+          const OrbitMatcher::Match& match = source.matches[use.edge];
+          use = {.edge = match.edge, .offset = match.offset, .reversed = use.reversed != match.flipped};
+        }
+      const Vec3 moment = value.moments.volume_moment;
+      kind.volume += (moment.x + moment.y + moment.z) / 3;
+      CellFace face{.face = static_cast<std::uint32_t>(geometry_.faces.size())};
+      classify(face, value, TopoDS::Face(it.Current()));
+      if (face.axis >= 0) {
+        face.wall_orbit = wall_orbit(face, value);
+        kind.walls.insert(2 * std::uint64_t{face.wall_orbit} + static_cast<std::uint64_t>(face.side));
+      }
+      kind.faces.push_back(face);
+      kind.shapes.push_back(TopoDS::Face(it.Current()));
+      geometry_.faces.push_back(std::move(value));
+    }
+  }
+  quotient_.uses.resize(geometry_.edges.size());
+  for (std::uint32_t k = 0; k < quotient_.kinds.size(); ++k)
+    for (std::uint32_t f = 0; f < quotient_.kinds[k].faces.size(); ++f)
+      for (const auto& loop : geometry_.faces[quotient_.kinds[k].faces[f].face].loops)
+        for (const Coedge& use : loop)
+          quotient_.uses[use.edge].push_back({.kind = k,
+                                              .face = f,
+                                              .face_cell = {-use.offset[0], -use.offset[1], -use.offset[2]},
+                                              .reversed = use.reversed});
+  for (std::size_t k = 0; k < sources_.size(); ++k)
+    closed = find_clusters(quotient_.kinds[k], sources_[k].face_lumps) && closed;
+}
+
+/// Faces that share an edge inside the box stay together; a wall, where it shows, hangs on the skin beside it.
+bool Builder::find_clusters(CellKind& kind, const std::vector<std::uint32_t>& face_lumps) {
+  std::map<std::pair<std::uint32_t, Index3>, std::vector<std::pair<std::uint32_t, bool>>> at_edge;
+  for (std::uint32_t f = 0; f < kind.faces.size(); ++f)
+    for (const auto& loop : geometry_.faces[kind.faces[f].face].loops)
+      for (const Coedge& use : loop)
+        if (!geometry_.edges[use.edge].degenerate) at_edge[{use.edge, use.offset}].push_back({f, use.reversed});
+  UnionFind sets(kind.faces.size());
+  for (const auto& [edge, uses] : at_edge) {
+    if (uses.size() != 2 || uses[0].second == uses[1].second) return false;
+    const bool two_walls = kind.faces[uses[0].first].axis >= 0 && kind.faces[uses[1].first].axis >= 0;
+    if (!two_walls) sets.join(uses[0].first, uses[1].first);
+  }
+  std::map<std::uint32_t, std::uint32_t> numbers;
+  for (std::uint32_t f = 0; f < kind.faces.size(); ++f) {
+    const auto [it, fresh] = numbers.emplace(sets.root(f), static_cast<std::uint32_t>(numbers.size()));
+    kind.faces[f].cluster = it->second;
+    if (fresh) kind.cluster_lumps.push_back(face_lumps[f]);
+  }
+  return true;
+}
+
+}  // namespace
+
+bool walls_overlap(const CellKind& low, const CellKind& high, int axis, Vec3 size) {
+  Vec3 by{};
+  by[static_cast<std::size_t>(axis)] = size[static_cast<std::size_t>(axis)];
+  gp_Trsf move;
+  move.SetTranslation(gp_Vec(by.x, by.y, by.z));
+  const auto lonely = [&](const CellFace& face, int side, const CellKind& other) {
+    return face.axis == axis && face.side == side &&
+           !other.walls.contains(2 * std::uint64_t{face.wall_orbit} + static_cast<std::uint64_t>(1 - side));
+  };
+  for (std::size_t a = 0; a < low.faces.size(); ++a) {
+    if (!lonely(low.faces[a], 1, high)) continue;
+    for (std::size_t b = 0; b < high.faces.size(); ++b) {
+      if (!lonely(high.faces[b], 0, low)) continue;
+      BRepAlgoAPI_Common common(low.shapes[a], high.shapes[b].Moved(TopLoc_Location(move)));
+      if (common.HasErrors()) return true;
+      GProp_GProps area;
+      BRepGProp::SurfaceProperties(common.Shape(), area);
+      if (area.Mass() > 1e-9 * size.x * size.y) return true;
+    }
+  }
+  return false;
+}
+
+std::optional<Quotient> build_quotient(const CellShape& cell, std::vector<Neighbour> neighbours,
+                                       const std::vector<std::uint64_t>& present, const LatticeOptions& options,
+                                       DiagnosticSink& sink) {
+  const Vec3 size = cell.size();
+  Quotient quotient;
+  quotient.neighbours = std::move(neighbours);
+  quotient.tolerance = cell.tolerance();
+  quotient.geometry->lattice = Mat3::from_columns({size.x, 0, 0}, {0, size.y, 0}, {0, 0, size.z});
+  const char* fault = nullptr;
+  try {
+    Builder builder(cell, quotient);
+    for (const std::uint64_t mask : present) {
+      const std::optional<TopoDS_Shape> solid = solid_in_box(cell, quotient.neighbours, mask, sink);
+      if (!solid) return {};
+      if (!builder.add_kind(*solid, mask)) fault = "a face of the unit cell bounds no solid";
+    }
+    if (options.mesh) builder.add_meshes(*options.mesh);
+    builder.add_faces();
+    if (!builder.closed) fault = "the unit cell is not a manifold inside its box";
+    if (!fault) find_natural_faces(quotient);
+  } catch (const Standard_Failure&) {
+    fault = "the faces of the unit cell cannot be read";
+  }
+  if (!fault) return quotient;
+  sink.report({.code = Code::geometry_not_repeatable, .args = {fault}});
+  return {};
+}
+
+}  // namespace meso::brep
