@@ -53,7 +53,7 @@ std::string line(double x1, double y1, double x2, double y2, std::string_view st
          std::string(stroke) + "\"/>\n";
 }
 
-/// Circle, square, triangle, diamond, cross: the series stay apart in a grey print.
+/// Circle, square, triangle, diamond, hanging triangle: the series stay apart in a grey print.
 std::string marker(double x, double y, std::size_t kind) {
   const auto point = [&](double dx, double dy) { return number(x + dx) + " " + number(y + dy); };
   std::string path;
@@ -70,8 +70,7 @@ std::string marker(double x, double y, std::size_t kind) {
       path = point(0, -5) + "L" + point(5, 0) + "L" + point(0, 5) + "L" + point(-5, 0);
       break;
     default:
-      path = point(-4.5, -1.5) + "L" + point(4.5, -1.5) + "L" + point(4.5, 1.5) + "L" + point(-4.5, 1.5) + "ZM" +
-             point(-1.5, -4.5) + "L" + point(1.5, -4.5) + "L" + point(1.5, 4.5) + "L" + point(-1.5, 4.5);
+      path = point(0, 4.8) + "L" + point(4.5, -3.4) + "L" + point(-4.5, -3.4);
   }
   return "<path d=\"M" + path + "Z\"/>";
 }
@@ -149,7 +148,7 @@ std::string write_plot_svg(const PlotSpec& plot) {
                     escaped(plot.title) + "</title>\n<rect width=\"100%\" height=\"100%\" fill=\"#ffffff\"/>\n";
   out += text_at(left, 32, " font-size=\"18\" font-weight=\"600\" fill=\"#15191d\"", plot.title);
   out += legend(plot.series);
-  out += text_at(left - 10, top - 14, " text-anchor=\"end\" fill=\"#4a5157\"", plot.y_label);
+  out += text_at(16, top - 14, " fill=\"#4a5157\"", plot.y_label);
   out += text_at((left + right) / 2, bottom + 46, " text-anchor=\"middle\" fill=\"#4a5157\"", plot.x_label);
   out += grid(frame);
   for (std::size_t i = 0; i < plot.series.size(); ++i) out += curve(plot.series[i], frame, i);
