@@ -1,0 +1,52 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+# Installs the Debian packages that building and testing Meso needs; does nothing where they are already there.
+#
+# usage: install-deps.sh [--all]     --all: also what the slower checks need (clang, clang-tidy, FreeCAD)
+#
+# Works as root or through sudo. Made for Debian 12; the list is also a reading list for other systems.
+set -euo pipefail
+
+packages=(
+  build-essential cmake ninja-build ccache pkg-config git python3
+  # reading and writing documents
+  libpugixml-dev libssl-dev
+  # libzip's CMake package insists on its three programs
+  libzip-dev zipcmp zipmerge ziptool
+  # expressions of patterns
+  libmuparser-dev
+  # exact geometry; OpenCASCADE's CMake package insists on all six
+  libocct-foundation-dev libocct-modeling-data-dev libocct-modeling-algorithms-dev
+  libocct-data-exchange-dev libocct-ocaf-dev libocct-visualization-dev
+  # pictures
+  libembree-dev libtbb-dev libpng-dev
+  # the command
+  libcli11-dev nlohmann-json3-dev libfmt-dev
+  # tests: GoogleTest, two judges of the XML schema, resource measurement
+  libgtest-dev libgmock-dev libbenchmark-dev libxml2-utils libxerces-c-samples time
+)
+slower_checks=(clang-14 clang-format-14 clang-tidy-14 libclang-rt-14-dev freecad-python3)
+
+case "${1-}" in
+  "") ;;
+  --all) packages+=("${slower_checks[@]}") ;;
+  *) sed -n '3,7s/^# \{0,1\}//p' "$0" >&2; exit 2 ;;
+esac
+
+missing=()
+for package in "${packages[@]}"; do
+  status=$(dpkg-query -W -f='${db:Status-Status}' "$package" 2>/dev/null || true)
+  [[ $status == installed ]] || missing+=("$package")
+done
+if ((${#missing[@]} == 0)); then
+  echo "install-deps: all ${#packages[@]} packages are there"
+  exit 0
+fi
+
+echo "install-deps: installing ${missing[*]}"
+as_root=()
+if ((EUID != 0)); then as_root=(sudo); fi
+export DEBIAN_FRONTEND=noninteractive
+"${as_root[@]}" apt-get update -qq
+"${as_root[@]}" apt-get install -y -qq --no-install-recommends "${missing[@]}" > /dev/null
+echo "install-deps: done"

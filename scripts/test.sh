@@ -1,0 +1,63 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+# Installs what is missing, builds, and tests: everything (dev), then reading, writing and validating alone (core-only).
+#
+# usage: test.sh [--all]     --all: also sanitizers, clang-tidy, formatting, desktop programs, fuzzing, benchmarks
+#
+# Goes on after a failure, so that one run tells all; the last line is the summary, and the exit status is its verdict.
+set -uo pipefail
+cd "$(dirname "$0")/.."
+
+all=false
+case "${1-}" in
+  "") ;;
+  --all) all=true ;;
+  *) sed -n '3,7s/^# \{0,1\}//p' "$0" >&2; exit 2 ;;
+esac
+
+# Objects compiled for one preset serve the next: the cache must not see the build folder's name.
+export CCACHE_BASEDIR=$PWD CCACHE_NOHASHDIR=1
+export CTEST_PARALLEL_LEVEL=${CTEST_PARALLEL_LEVEL:-$(nproc)}
+
+passed=() failed=()
+step() {  # step NAME COMMAND...: runs it, remembers how it went
+  local name=$1 begin=$SECONDS
+  shift
+  printf '\n== %s\n' "$name"
+  if "$@"; then passed+=("$name"); else failed+=("$name"); fi
+  printf '== %s: %d s\n' "$name" $((SECONDS - begin))
+}
+build() {  # build PRESET [cmake arguments]
+  local preset=$1
+  shift
+  cmake --preset "$preset" "$@" && cmake --build --preset "$preset" -- --quiet
+}
+build_and_test() {  # build_and_test PRESET [ctest arguments]
+  local preset=$1
+  shift
+  build "$preset" && ctest --preset "$preset" --no-tests=error "$@"
+}
+
+if $all; then step packages ./scripts/install-deps.sh --all; else step packages ./scripts/install-deps.sh; fi
+# "desktop" needs programs with a window, "fuzz" runs for minutes: both belong to --all.
+step dev build_and_test dev -LE 'desktop|fuzz'
+step core-only build_and_test core-only -LE 'desktop|fuzz'
+step dependencies ./scripts/check_dependencies.py build/dev/bin/meso
+
+if $all; then
+  step format ./scripts/check_format.sh
+  step desktop ctest --preset dev -L 'desktop|fuzz'
+  step asan build_and_test asan -LE 'desktop|fuzz'
+  step tidy build tidy
+  step benchmarks build release
+  for bench in build/release/bin/*_bench; do
+    if [[ -x $bench ]]; then step "$(basename "$bench")" "$bench"; fi
+  done
+fi
+
+printf '\n== %d s; passed: %s' "$SECONDS" "${passed[*]-}"
+if ((${#failed[@]} > 0)); then
+  printf '; FAILED: %s\n' "${failed[*]}"
+  exit 1
+fi
+printf '; nothing failed\n'
