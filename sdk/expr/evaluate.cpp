@@ -104,7 +104,7 @@ EvalResult evaluate(const Expression& expression, std::span<const double> slots)
         break;
       case Op::and_skip:
         if (*--top == 0) {
-          ++top;
+          *top++ = 0;  // the value may have been a negative zero
           i = node.index - 1;
         }
         break;

@@ -57,6 +57,7 @@ TEST(Evaluate, Logic) {
   EXPECT_EQ(value("not 0"), 1);
   EXPECT_EQ(value("not 0.1"), 0);
   EXPECT_EQ(value("0 or 3 and 4"), 1);
+  EXPECT_FALSE(std::signbit(value("-0 and 1")));
 }
 
 TEST(Evaluate, Conditions) {
@@ -149,8 +150,8 @@ TEST(Domain, EveryOperationIsWatched) {
   EXPECT_EQ(domain_fault("2 * (1e200 * 1e200)"), "1e200 * 1e200");
   EXPECT_EQ(domain_fault("(-8)^(1/3)"), "(-8)^(1/3)");
   EXPECT_EQ(domain_fault("0^-1"), "0^-1");
-  for (const char* call :
-       {"sqrt(-1)", "log(0)", "log(-1)", "exp(1000)", "asin(1.1)", "acos(-1.1)", "mod(1, 0)", "hypot(1.5e308, 1.5e308)"})
+  for (const char* call : {"sqrt(-1)", "log(0)", "log(-1)", "exp(1000)", "asin(1.1)", "acos(-1.1)", "mod(1, 0)",
+                           "hypot(1.5e308, 1.5e308)"})
     EXPECT_EQ(domain_fault("2 + " + std::string(call)), call);
 }
 
@@ -192,7 +193,7 @@ TEST(Slots, MayBeSharedAndBoundAgain) {
 
 TEST(Depth, TheDeepestExpressionFitsTheStack) {
   std::string text = "1";
-  for (std::size_t i = 0; i < max_nesting; ++i) text = "hash(1,1,1,1,1,1,1,0<0+1*" + text + ")";
+  for (std::size_t i = 0; i < max_nesting; ++i) text.insert(0, "hash(1,1,1,1,1,1,1,0<0+1*").append(")");
   EXPECT_TRUE(evaluate(parsed(text), {}));
 }
 

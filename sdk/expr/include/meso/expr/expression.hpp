@@ -70,7 +70,7 @@ enum class Op : std::uint8_t {
   select,        ///< condition ? first : second; three operands, of which one is skipped
   skip_if_zero,  ///< walk only: take a value off; if it is 0 go on at node `index`
   skip,          ///< walk only: go on at node `index`
-  and_skip,      ///< walk only: if the top value is 0 go on at node `index`, else take it off
+  and_skip,      ///< walk only: if the top value is 0 make it +0 and go on at node `index`, else take it off
   or_skip,       ///< walk only: if the top value is not 0 replace it by 1 and go on at `index`, else take it off
 };
 
@@ -134,8 +134,8 @@ struct ParseResult {
 };
 
 /// Any bytes are fine as `text`. Linear in its size, except that the digits of a literal with a unit are converted
-/// exactly, which is quadratic in their number (a few milliseconds at the limit). Which names exist is not the
-/// parser's business: ask names().
+/// exactly, which is quadratic in their number (a few milliseconds at the limit). Needs at most 512 KiB of stack. Which
+/// names exist is not the parser's business: ask names().
 [[nodiscard]] ParseResult parse_expression(std::string_view text, LengthUnit document_unit);
 
 /// A finite value, or the subexpression whose operation has none (EXPRESSION_DOMAIN; its text is the argument).
