@@ -1,0 +1,246 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "boolean.hpp"
+
+#include <BOPAlgo_BOP.hxx>
+#include <BOPAlgo_PaveFiller.hxx>
+#include <Message_ProgressIndicator.hxx>
+#include <TopTools_IndexedDataMapOfShapeListOfShape.hxx>
+#include <algorithm>
+#include <array>
+#include <string_view>
+
+#include "face_moments.hpp"
+#include "meso/base/number.hpp"
+
+namespace meso::brep {
+namespace {
+
+constexpr double volume_tolerance = 1e-6;  ///< relative, of the identity
+// Surfaces that nearly coincide intersect in edges that are barely known; those agree with every identity and are
+// wrong.
+constexpr double edge_tolerance_mm = 1e-4;
+
+/// Lets OpenCASCADE ask whether to go on.
+class StopWatch : public Message_ProgressIndicator {
+ public:
+  explicit StopWatch(const RunOptions& run) : run_(run) {}
+  Standard_Boolean UserBreak() override { return run_.should_stop(); }
+
+ protected:
+  void Show(const Message_ProgressScope&, const Standard_Boolean) override {}
+
+ private:
+  const RunOptions& run_;
+};
+
+bool boxes_meet(const TopoDS_Shape& a, const TopoDS_Shape& b) {
+  Bnd_Box box_a, box_b;
+  BRepBndLib::Add(a, box_a);
+  BRepBndLib::Add(b, box_b);
+  return !box_a.IsOut(box_b);
+}
+
+Solids near(const Solids& solids, const Solids& others) {
+  Solids out;
+  std::ranges::copy_if(solids, std::back_inserter(out), [&](const TopoDS_Shape& solid) {
+    return std::ranges::any_of(others, [&](const TopoDS_Shape& other) { return boxes_meet(solid, other); });
+  });
+  return out;
+}
+
+TopTools_ListOfShape to_list(const Solids& solids) {
+  TopTools_ListOfShape list;
+  for (const TopoDS_Shape& solid : solids) list.Append(solid);
+  return list;
+}
+
+std::string_view name_of(BOPAlgo_Operation operation) {
+  return operation == BOPAlgo_FUSE ? "union" : operation == BOPAlgo_COMMON ? "intersection" : "difference";
+}
+
+double edge_tolerance(const TopoDS_Shape& shape) {
+  double largest = 0;
+  for (TopExp_Explorer it(shape, TopAbs_EDGE); it.More(); it.Next())
+    largest = std::max(largest, BRep_Tool::Tolerance(TopoDS::Edge(it.Current())));
+  return largest;
+}
+
+/// The pieces that an operation splits its arguments into, and whose piece each is.
+class Pieces {
+ public:
+  /// False if the pieces of an argument do not have its volume.
+  bool add(const BOPAlgo_BOP& operation, const TopoDS_Shape& argument, bool is_tool) {
+    TopTools_ListOfShape images;
+    if (!operation.Images().Find(argument, images)) images.Append(argument);
+    double sum = 0;
+    for (const TopoDS_Shape& image : images) {
+      const TopoDS_Shape* same = operation.ShapesSD().Seek(image);
+      const int index = pieces_.Add(same != nullptr ? *same : image);
+      if (static_cast<std::size_t>(index) > owners_.size()) owners_.push_back({0, 0, std::fabs(volume_of(image))});
+      Owners& owners = owners_[static_cast<std::size_t>(index) - 1];
+      (is_tool ? owners.tools : owners.objects) += 1;
+      sum += owners.volume;
+    }
+    const double whole = volume_of(argument);
+    return std::fabs(sum - whole) <= volume_tolerance * whole;
+  }
+
+  [[nodiscard]] double expected(BOPAlgo_Operation operation) const {
+    double sum = 0;
+    for (const Owners& piece : owners_) {
+      const bool kept = operation == BOPAlgo_FUSE     ? true
+                        : operation == BOPAlgo_COMMON ? piece.objects > 0 && piece.tools > 0
+                                                      : piece.objects > 0 && piece.tools == 0;
+      if (kept) sum += piece.volume;
+    }
+    return sum;
+  }
+  [[nodiscard]] double total() const {
+    double sum = 0;
+    for (const Owners& piece : owners_) sum += piece.volume;
+    return sum;
+  }
+
+ private:
+  struct Owners {
+    int objects, tools;
+    double volume;
+  };
+  TopTools_IndexedMapOfShape pieces_;
+  std::vector<Owners> owners_;
+};
+
+struct Attempt {
+  std::optional<Solids> solids;
+  std::string fault;  ///< why not
+};
+
+std::optional<std::string> fault_of(const BOPAlgo_BOP& operation, BOPAlgo_Operation kind, const Solids& objects,
+                                    const Solids& tools, const Solids& result) {
+  Pieces pieces;
+  for (const TopoDS_Shape& object : objects)
+    if (!pieces.add(operation, object, false)) return "the pieces of a body do not add up to it";
+  for (const TopoDS_Shape& tool : tools)
+    if (!pieces.add(operation, tool, true)) return "the pieces of a body do not add up to it";
+  double volume = 0;
+  for (const TopoDS_Shape& solid : result) {
+    if (edge_uses(solid).free > 0) return "the result is not closed";
+    if (const double tolerance = edge_tolerance(solid); tolerance > edge_tolerance_mm)
+      return "an edge is only known to " + format_number(tolerance) + " mm";
+    volume += volume_of(solid);
+  }
+  const double expected = pieces.expected(kind);
+  if (std::fabs(volume - expected) <= volume_tolerance * pieces.total()) return {};
+  return "its volume is " + format_number(volume) + " mm3 where the pieces have " + format_number(expected) + " mm3";
+}
+
+Attempt attempt(BOPAlgo_Operation kind, const Solids& objects, const Solids& tools, double fuzzy,
+                const RunOptions& run) {
+  Solids all = objects;
+  all.insert(all.end(), tools.begin(), tools.end());
+  const Handle(StopWatch) watch = new StopWatch(run);
+  const Message_ProgressRange range = watch->Start();
+  Message_ProgressScope scope(range, "boolean", 2);
+  BOPAlgo_PaveFiller filler;
+  filler.SetArguments(to_list(all));
+  filler.SetNonDestructive(true);
+  filler.SetRunParallel(true);
+  filler.SetUseOBB(true);
+  filler.SetFuzzyValue(fuzzy);
+  filler.Perform(scope.Next());
+  if (filler.HasErrors()) return {{}, "the bodies cannot be intersected"};
+  BOPAlgo_BOP operation;
+  for (const TopoDS_Shape& object : objects) operation.AddArgument(object);
+  for (const TopoDS_Shape& tool : tools) operation.AddTool(tool);
+  operation.SetOperation(kind);
+  operation.SetRunParallel(true);
+  operation.PerformWithFiller(filler, scope.Next());
+  if (operation.HasErrors() || operation.Shape().IsNull()) return {{}, "the pieces cannot be put together"};
+  Solids result = solids_of(operation.Shape());
+  if (auto fault = fault_of(operation, kind, objects, tools, result)) return {{}, *fault};
+  return {std::move(result), {}};
+}
+
+std::optional<Solids> checked(BOPAlgo_Operation kind, const Solids& objects, const Solids& tools, ElementId where,
+                              const SolidContext& context) {
+  std::string fault;
+  for (const double fuzzy : {0.0, 1e-6, 1e-5}) {
+    if (context.run.should_stop()) break;
+    try {
+      Attempt result = attempt(kind, objects, tools, fuzzy, context.run);
+      if (result.solids) return std::move(result.solids);
+      if (fault.empty()) fault = result.fault;
+    } catch (const Standard_Failure& failure) {
+      if (fault.empty()) fault = failure.GetMessageString();
+    }
+  }
+  if (context.run.should_stop())
+    context.report(context.run.out_of_time() ? Code::limit_time : Code::cancelled, where, {});
+  else
+    context.report(Code::geometry_boolean, where,
+                   {std::string(name_of(kind)), std::to_string(objects.size() + tools.size()), fault});
+  return {};
+}
+
+}  // namespace
+
+double volume_of(const TopoDS_Shape& shape) {
+  double volume = 0;
+  for (TopExp_Explorer it(shape, TopAbs_FACE); it.More(); it.Next()) {
+    const Vec3 m = face_moments(TopoDS::Face(it.Current())).volume_moment;
+    volume += (m.x + m.y + m.z) / 3;
+  }
+  return volume;
+}
+
+Box3 box_of(const TopoDS_Shape& shape) {
+  Box3 box;
+  for (TopExp_Explorer it(shape, TopAbs_FACE); it.More(); it.Next()) {
+    const Box3 face = face_box(TopoDS::Face(it.Current()));
+    box.extend(face.min);
+    box.extend(face.max);
+  }
+  return box;
+}
+
+EdgeUses edge_uses(const TopoDS_Shape& shape) {
+  TopTools_IndexedMapOfShape edges;
+  std::vector<int> uses;
+  for (TopExp_Explorer faces(shape, TopAbs_FACE); faces.More(); faces.Next())
+    for (TopExp_Explorer it(faces.Current(), TopAbs_EDGE); it.More(); it.Next()) {
+      if (BRep_Tool::Degenerated(TopoDS::Edge(it.Current()))) continue;
+      const auto index = static_cast<std::size_t>(edges.Add(it.Current()));
+      if (index > uses.size()) uses.push_back(0);
+      ++uses[index - 1];
+    }
+  return {static_cast<std::size_t>(std::ranges::count(uses, 1)),
+          static_cast<std::size_t>(std::ranges::count_if(uses, [](int n) { return n > 2; }))};
+}
+
+Solids solids_of(const TopoDS_Shape& shape) {
+  Solids solids;
+  for (TopExp_Explorer it(shape, TopAbs_SOLID); it.More(); it.Next()) {
+    const TopoDS_Shape& solid = it.Current();
+    solids.push_back(volume_of(solid) < 0 ? solid.Reversed() : solid);
+  }
+  return solids;
+}
+
+std::optional<Solids> fuse(const Solids& operands, ElementId where, const SolidContext& context) {
+  if (operands.size() < 2) return operands;
+  return checked(BOPAlgo_FUSE, {operands.front()}, {operands.begin() + 1, operands.end()}, where, context);
+}
+
+std::optional<Solids> common(const Solids& a, const Solids& b, ElementId where, const SolidContext& context) {
+  const Solids near_a = near(a, b), near_b = near(b, a);
+  if (near_a.empty() || near_b.empty()) return Solids{};
+  return checked(BOPAlgo_COMMON, near_a, near_b, where, context);
+}
+
+std::optional<Solids> cut(const Solids& base, const Solids& tools, ElementId where, const SolidContext& context) {
+  const Solids near_tools = near(tools, base);
+  if (near_tools.empty() || base.empty()) return base;
+  return checked(BOPAlgo_CUT, base, near_tools, where, context);
+}
+
+}  // namespace meso::brep

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "import_solid.hpp"
+
+#include <Interface_Static.hxx>
+#include <Message.hxx>
+#include <Message_Messenger.hxx>
+#include <STEPControl_Reader.hxx>
+#include <algorithm>
+#include <cctype>
+#include <fstream>
+#include <iterator>
+#include <mutex>
+
+#include "boolean.hpp"
+#include "import_stl.hpp"
+#include "meso/resource/resource.hpp"
+#include "solid_primitive.hpp"
+
+namespace meso::brep {
+namespace {
+
+using std::filesystem::path;
+
+std::string lower_extension(const path& file) {
+  std::string text = file.extension().string();
+  std::ranges::transform(text, text.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return text;
+}
+
+bool hash_holds(const eval::ImportShape& import, ElementId where, const SolidContext& context) {
+  if (!import.sha256) return true;
+  const auto actual = sha256_of_file(import.file);
+  if (actual == import.sha256) return true;
+  context.report(Code::import_changed, where, {import.file.string(), actual.value_or("(unreadable)"), *import.sha256});
+  return false;
+}
+
+/// OpenCASCADE's reader keeps its settings in process-wide variables, and writes to standard output.
+std::mutex& step_mutex() {
+  static std::mutex mutex;
+  return mutex;
+}
+
+/// Null if no root could be transferred.
+TopoDS_Shape read_step_shape(const path& file) {
+  const std::scoped_lock lock(step_mutex());
+  Message::DefaultMessenger()->ChangePrinters().Clear();
+  STEPControl_Reader reader;
+  Interface_Static::SetCVal("xstep.cascade.unit", "MM");
+  if (reader.ReadFile(file.c_str()) != IFSelect_RetDone || reader.TransferRoots() == 0) return {};
+  return reader.OneShape();
+}
+
+std::optional<Solids> read_step(const path& file, ElementId where, const SolidContext& context) {
+  std::ifstream stream(file, std::ios::binary);
+  const std::string text{std::istreambuf_iterator<char>(stream), {}};
+  if (!stream) {
+    context.report(Code::import_unreadable, where, {file.string(), "it cannot be opened"});
+    return {};
+  }
+  if (has_bad_number(text)) {
+    context.report(Code::import_unreadable, where, {file.string(), "it has a number that is not finite"});
+    return {};
+  }
+  const TopoDS_Shape shape = read_step_shape(file);
+  if (shape.IsNull()) {
+    context.report(Code::import_unreadable, where, {file.string(), "it is not a complete STEP file"});
+    return {};
+  }
+  return solids_of(shape);
+}
+
+/// What is wrong with imported solids, or nothing.
+std::optional<std::string> fault_of(const Solids& solids) {
+  if (solids.empty()) return "no solid in it";
+  for (const TopoDS_Shape& solid : solids) {
+    const EdgeUses uses = edge_uses(solid);
+    if (uses.free > 0) return std::to_string(uses.free) + " edges belong to one face only";
+    if (uses.multiple > 0) return std::to_string(uses.multiple) + " edges belong to more than two faces";
+    if (!(volume_of(solid) > 0)) return "a solid has no volume";
+  }
+  return {};
+}
+
+}  // namespace
+
+bool has_bad_number(std::string_view step) {
+  bool in_string = false;
+  const auto is_word = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_'; };
+  for (std::size_t i = 0; i + 3 < step.size(); ++i) {
+    if (step[i] == '\'') in_string = !in_string;
+    if (in_string || is_word(step[i]) || !is_word(step[i + 1])) continue;
+    std::string word;
+    for (std::size_t k = i + 1; k < step.size() && is_word(step[k]) && word.size() < 9; ++k)
+      word += static_cast<char>(std::tolower(static_cast<unsigned char>(step[k])));
+    if (word == "nan" || word == "inf" || word == "infinity") return true;
+  }
+  return false;
+}
+
+std::optional<Solids> import_solids(const eval::ImportShape& import, const Affine& map, ElementId where,
+                                    const SolidContext& context) {
+  if (!hash_holds(import, where, context)) return {};
+  const std::string extension = lower_extension(import.file);
+  std::optional<Solids> read;
+  if (extension == ".step" || extension == ".stp") {
+    read = read_step(import.file, where, context);
+  } else if (extension == ".stl") {
+    read = read_stl_solids(import.file, where, context);
+  } else {
+    context.report(Code::import_no_reader, where, {import.file.string()});
+  }
+  if (!read) return {};
+  if (const auto fault = fault_of(*read)) {
+    context.report(Code::import_not_closed, where, {import.file.string(), *fault});
+    return {};
+  }
+  const double s = import.scale;
+  const Affine scaled{Mat3::from_columns({s, 0, 0}, {0, s, 0}, {0, 0, s}), {}};
+  for (TopoDS_Shape& solid : *read) solid = mapped(solid, map * import.transform * scaled);
+  return read;
+}
+
+}  // namespace meso::brep

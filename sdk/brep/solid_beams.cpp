@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "solid_beams.hpp"
+
+#include <algorithm>
+#include <numbers>
+
+#include "meso/base/number.hpp"
+#include "solid_primitive.hpp"
+
+namespace meso::brep {
+namespace {
+
+struct Ball {
+  Vec3 center;
+  double radius;
+};
+
+/// Balls without repetition: struts that meet at a node bring the same cap.
+class Balls {
+ public:
+  void add(Vec3 center, double radius) {
+    const bool known = std::ranges::any_of(balls_, [&](const Ball& b) {
+      return norm(b.center - center) <= smallest_size && radius <= b.radius + smallest_size;
+    });
+    if (known) return;
+    std::erase_if(balls_, [&](const Ball& b) {
+      return norm(b.center - center) <= smallest_size && b.radius <= radius + smallest_size;
+    });
+    balls_.push_back({center, radius});
+  }
+  [[nodiscard]] const std::vector<Ball>& all() const { return balls_; }
+
+ private:
+  std::vector<Ball> balls_;
+};
+
+bool size_holds(const char* name, double value, ElementId where, const SolidContext& context) {
+  if (std::isfinite(value) && value > smallest_size) return true;
+  context.report(Code::geometry_size, where, {name, format_number(value)});
+  return false;
+}
+
+bool is_cone(const eval::Strut& strut) { return std::fabs(strut.radius_from - strut.radius_to) > smallest_size; }
+
+/// The half of a ball that looks along `outward_axis`.
+TopoDS_Shape half_ball(Vec3 center, Vec3 outward_axis, double radius) {
+  return BRepPrimAPI_MakeSphere(gp_Ax2(to_pnt(center), to_dir(outward_axis)), radius, 0, std::numbers::pi / 2).Solid();
+}
+
+}  // namespace
+
+std::optional<Solids> beam_primitives(const eval::BeamsShape& beams, const Affine& map, ElementId where,
+                                      const SolidContext& context) {
+  Balls balls;
+  Solids solids;
+  for (const eval::StrutNode& node : beams.nodes) {
+    if (!std::isfinite(norm(node.position))) {
+      context.report(Code::geometry_size, where, {"the position of a node", "not finite"});
+      return {};
+    }
+    if (node.ball_radius == 0) continue;
+    if (!size_holds("the radius of a node", node.ball_radius, where, context)) return {};
+    balls.add(node.position, node.ball_radius);
+  }
+  for (const eval::Strut& strut : beams.struts) {
+    const Vec3 from = beams.nodes[strut.from].position, to = beams.nodes[strut.to].position;
+    if (!size_holds("the length of a beam", norm(to - from), where, context) ||
+        !size_holds("the radius of a beam", strut.radius_from, where, context) ||
+        !size_holds("the radius of a beam", strut.radius_to, where, context))
+      return {};
+    const Vec3 along = (to - from) / norm(to - from);
+    solids.push_back(mapped(frustum(from, to, strut.radius_from, strut.radius_to), map));
+    const auto add_cap = [&](BeamCap cap, Vec3 center, Vec3 outwards, double radius) {
+      if (cap == BeamCap::butt) return;
+      // Half a ball and a whole one differ only where the strut narrows away from it.
+      if (cap == BeamCap::hemisphere && is_cone(strut))
+        solids.push_back(mapped(half_ball(center, outwards, radius), map));
+      else
+        balls.add(center, radius);
+    };
+    add_cap(strut.cap_from, from, -along, strut.radius_from);
+    add_cap(strut.cap_to, to, along, strut.radius_to);
+  }
+  for (const Ball& ball : balls.all())
+    solids.push_back(mapped(BRepPrimAPI_MakeSphere(to_pnt(ball.center), ball.radius).Solid(), map));
+  return solids;
+}
+
+}  // namespace meso::brep
