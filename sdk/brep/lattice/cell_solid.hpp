@@ -38,7 +38,4 @@ struct Neighbour {
 [[nodiscard]] std::optional<TopoDS_Shape> solid_in_box(const CellShape& cell, const std::vector<Neighbour>& neighbours,
                                                        std::uint64_t present, DiagnosticSink& sink);
 
-/// By the exact face integrals.
-[[nodiscard]] double exact_volume(const TopoDS_Shape& shape);
-
 }  // namespace meso::brep

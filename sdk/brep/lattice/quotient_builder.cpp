@@ -2,6 +2,7 @@
 #include "lattice/quotient_builder.hpp"
 
 #include <map>
+#include <string>
 
 #include "face_moments.hpp"
 #include "lattice/natural_faces.hpp"
@@ -57,7 +58,7 @@ class Builder {
   std::vector<Source> sources_;
   std::vector<bool> boundary_;  // per edge of the template
   std::map<std::vector<std::int32_t>, std::uint32_t> wall_orbits_;
-  bool with_mesh_ = false;
+  std::optional<EdgePolygons> polygons_;  // where a mesh is wanted
 
  public:
   bool closed = true;
@@ -105,8 +106,7 @@ bool Builder::add_kind(const TopoDS_Shape& solid, std::uint64_t present) {
 void Builder::add_meshes(const MeshFineness& fineness) {
   std::vector<TemplateEdges> edges;
   for (const Source& source : sources_) edges.push_back({source.shell, source.edges, source.matches});
-  mesh_alike(edges, fineness);
-  with_mesh_ = true;
+  polygons_ = mesh_alike(edges, geometry_, fineness);
 }
 
 void Builder::classify(CellFace& face, const FaceTemplate& value, const TopoDS_Face& shape) const {
@@ -142,7 +142,7 @@ void Builder::add_faces() {
   for (std::size_t k = 0; k < sources_.size(); ++k) {
     const Source& source = sources_[k];
     CellKind& kind = quotient_.kinds[k];
-    Template own = shell_to_template(source.shell, with_mesh_);
+    Template own = shell_to_template(source.shell, polygons_.has_value());
     std::size_t index = 0;
     for (TopExp_Explorer it(source.shell, TopAbs_FACE); it.More(); it.Next(), ++index) {
       FaceTemplate& value = own.faces[index];
@@ -151,6 +151,8 @@ void Builder::add_faces() {
           const OrbitMatcher::Match& match = source.matches[use.edge];
           use = {.edge = match.edge, .offset = match.offset, .reversed = use.reversed != match.flipped};
         }
+      if (polygons_ && !share_points(value, geometry_, *polygons_, 20 * cell_.tolerance()))
+        throw Standard_Failure("a face has not the points of its edges");
       const Vec3 moment = value.moments.volume_moment;
       kind.volume += (moment.x + moment.y + moment.z) / 3;
       CellFace face{.face = static_cast<std::uint32_t>(geometry_.faces.size())};
@@ -232,7 +234,7 @@ std::optional<Quotient> build_quotient(const CellShape& cell, std::vector<Neighb
   quotient.neighbours = std::move(neighbours);
   quotient.tolerance = cell.tolerance();
   quotient.geometry->lattice = Mat3::from_columns({size.x, 0, 0}, {0, size.y, 0}, {0, 0, size.z});
-  const char* fault = nullptr;
+  std::string fault;
   try {
     Builder builder(cell, quotient);
     for (const std::uint64_t mask : present) {
@@ -243,11 +245,11 @@ std::optional<Quotient> build_quotient(const CellShape& cell, std::vector<Neighb
     if (options.mesh) builder.add_meshes(*options.mesh);
     builder.add_faces();
     if (!builder.closed) fault = "the unit cell is not a manifold inside its box";
-    if (!fault) find_natural_faces(quotient);
-  } catch (const Standard_Failure&) {
-    fault = "the faces of the unit cell cannot be read";
+    if (fault.empty()) find_natural_faces(quotient);
+  } catch (const Standard_Failure& failure) {
+    fault = std::string("the faces of the unit cell cannot be read: ") + failure.GetMessageString();
   }
-  if (!fault) return quotient;
+  if (fault.empty()) return quotient;
   sink.report({.code = Code::geometry_not_repeatable, .args = {fault}});
   return {};
 }
