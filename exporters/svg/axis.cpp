@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "axis.hpp"
 
-#include <algorithm>
-#include <array>
 #include <cassert>
 #include <cmath>
 
@@ -30,8 +28,8 @@ Axis linear_axis(double min, double max) {
   // The smallest step of 1, 2 or 5 times a power of ten that needs at most six of itself.
   const double wanted = (max - min) / 6;
   const int k = decade_of(wanted);
-  const std::array<int, 4> steps{1, 2, 5, 10};
-  const int n = *std::find_if(steps.begin(), steps.end(), [&](int s) { return scaled(s, k) >= wanted * (1 - 1e-12); });
+  int n = 1;
+  while (n < 10 && scaled(n, k) < wanted * (1 - 1e-12)) n = n == 1 ? 2 : n == 2 ? 5 : 10;
   const double step = scaled(n, k);
   const double first = std::floor(min / step + 1e-9), last = std::ceil(max / step - 1e-9);
 

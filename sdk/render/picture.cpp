@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "meso/render/picture.hpp"
 
+#include <tbb/info.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
@@ -92,7 +93,8 @@ std::optional<Image> draw(const TriangleMesh& mesh, const RenderOptions& options
 
   // Bands of rows, so that progress is told and a stop is asked for from this thread alone.
   constexpr std::uint32_t band = 16;
-  tbb::task_arena arena(run.jobs == 0 ? tbb::task_arena::automatic : static_cast<int>(run.jobs));
+  const auto cores = static_cast<unsigned>(tbb::info::default_concurrency());
+  tbb::task_arena arena(static_cast<int>(run.jobs == 0 ? cores : std::min(cores, run.jobs)));
   for (std::uint32_t y = 0; y < options.height; y += band) {
     if (run.should_stop()) {
       sink.report({.code = Code::cancelled});
