@@ -58,7 +58,7 @@ template <Op op>
   if constexpr (op == Op::equal) return x == y ? 1 : 0;
   if constexpr (op == Op::not_equal) return x != y ? 1 : 0;
   if constexpr (op == Op::mod) return x - y * apply<Op::floor>(x / y);
-  // + 0.0 makes a positive zero of either zero; atan2 is the only operation that could tell them apart.
+  // + 0.0 makes a positive zero of either zero; atan2 is the only operation that could tell them apart.
   if constexpr (op == Op::atan2) return std::atan2(x + 0.0, y + 0.0);
   if constexpr (op == Op::hypot) return std::hypot(x, y);
   if constexpr (op == Op::min) return y < x ? y : x;
@@ -71,7 +71,7 @@ template <Op op>
   return apply<Op::min>(apply<Op::max>(x, y), z);
 }
 
-/// a number in [0, 1) that looks random and is the same everywhere. Every argument is rounded to an integer;
+/// a number in [0, 1) that looks random and is the same everywhere. Every argument is rounded to an integer;
 /// beyond 2^53 there is no value.
 [[nodiscard]] inline double apply_hash(std::span<const double> arguments) {
   std::uint64_t h = 0;
