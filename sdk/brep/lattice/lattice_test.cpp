@@ -142,6 +142,15 @@ TEST(Lattice, MeshesAreWatertight) {
   }
 }
 
+TEST(Lattice, BallsOnCornersAreWholeInside) {
+  // Inside: per cell one ball at the centre, one on corners, eight struts. 3x3x3 cells have 8 whole corner balls.
+  const Case c = realise(bcc({5, 5, 5}, 0.5, 0.9), block(3, 3, 3));
+  EXPECT_EQ(c.audit.faces, 27u * 9 + 8 + (27 * 8 - 8 * 8) + 9 * 6 * 4);
+  const Case cubes = realise(cubic({5, 4, 6}, 0.5, 0.9), block(3, 3, 3));
+  // 8 whole balls, 3 * 12 whole struts; on the border pieces and walls.
+  EXPECT_EQ(cubes.audit.faces, 8u + 36 + (27 * 8 - 8 * 8) + (27 * 12 - 36 * 4) + 9 * 6);
+}
+
 TEST(Lattice, IBeam) {
   for (const int f : {1, 2}) {
     const auto inside = [f](Index3 c) { return c[1] < 2 * f || c[1] >= 10 * f || (c[0] >= 3 * f && c[0] < 7 * f); };

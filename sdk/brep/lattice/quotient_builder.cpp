@@ -5,6 +5,7 @@
 #include <string>
 
 #include "face_moments.hpp"
+#include "lattice/imprint.hpp"
 #include "lattice/natural_faces.hpp"
 #include "lattice/orbit_matcher.hpp"
 #include "lattice/template_mesh.hpp"
@@ -237,11 +238,15 @@ std::optional<Quotient> build_quotient(const CellShape& cell, std::vector<Neighb
   std::string fault;
   try {
     Builder builder(cell, quotient);
+    std::vector<TopoDS_Shape> solids;
     for (const std::uint64_t mask : present) {
       const std::optional<TopoDS_Shape> solid = solid_in_box(cell, quotient.neighbours, mask, sink);
       if (!solid) return {};
-      if (!builder.add_kind(*solid, mask)) fault = "a face of the unit cell bounds no solid";
+      solids.push_back(*solid);
     }
+    if (!divide_alike(solids, cell)) fault = "the walls of the unit cell cannot be divided alike";
+    for (std::size_t k = 0; k < solids.size(); ++k)
+      if (!builder.add_kind(solids[k], present[k])) fault = "a face of the unit cell bounds no solid";
     if (options.mesh) builder.add_meshes(*options.mesh);
     builder.add_faces();
     if (!builder.closed) fault = "the unit cell is not a manifold inside its box";
