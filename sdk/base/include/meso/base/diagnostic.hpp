@@ -63,6 +63,7 @@ class DiagnosticSink {
   [[nodiscard]] bool has_errors() const { return errors_ > 0; }
   [[nodiscard]] std::size_t error_count() const { return errors_; }
   [[nodiscard]] bool truncated() const { return truncated_; }
+  [[nodiscard]] std::size_t max_diagnostics() const { return max_; }
   [[nodiscard]] const std::vector<Diagnostic>& diagnostics() const { return diagnostics_; }
 
  private:

@@ -48,6 +48,7 @@ class SourceMap {
   [[nodiscard]] SourceSpan span_at(std::size_t offset, std::size_t length) const;
 
   [[nodiscard]] const std::string& file() const { return file_; }
+  [[nodiscard]] const std::string& text() const { return text_; }
 
  private:
   std::string file_;

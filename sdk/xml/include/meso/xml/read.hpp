@@ -18,9 +18,12 @@
 
 namespace meso {
 
+/// Limits, each answered by a diagnostic of its own. Memory is at most about 20 bytes per byte of the file.
 struct ReadOptions {
+  static constexpr std::size_t deepest = 1000;  ///< what max_depth is cut to: reading recurses once per level
   std::size_t max_bytes = std::size_t{256} << 20;
   std::size_t max_depth = 100;
+  std::size_t max_nodes = 5'000'000;      ///< elements and attributes together
   std::vector<std::string> understood{};  ///< names that `requires` may ask for beyond what this reader knows
 };
 struct ReadResult {
