@@ -31,10 +31,15 @@ Axis linear_axis(double min, double max) {
   int n = 1;
   while (n < 10 && scaled(n, k) < wanted * (1 - 1e-12)) n = n == 1 ? 2 : n == 2 ? 5 : 10;
   const double step = scaled(n, k);
-  const double first = std::floor(min / step + 1e-9), last = std::ceil(max / step - 1e-9);
+  const auto first = std::lround(std::floor(min / step + 1e-9)), last = std::lround(std::ceil(max / step - 1e-9));
 
-  Axis axis{.log = false, .low = scaled(first * n, k), .high = scaled(last * n, k), .ticks = {}};
-  for (double i = first; i <= last; ++i) axis.ticks.push_back({scaled(i * n, k), tick_label(scaled(i * n, k))});
+  Axis axis;
+  for (auto i = first; i <= last; ++i) {
+    const double value = scaled(static_cast<double>(i * n), k);
+    axis.ticks.push_back({value, tick_label(value)});
+  }
+  axis.low = axis.ticks.front().value;
+  axis.high = axis.ticks.back().value;
   return axis;
 }
 

@@ -122,14 +122,18 @@ std::string curve(const PlotSeries& series, const Frame& frame, std::size_t inde
          "\" stroke=\"#ffffff\" stroke-width=\"1\">\n" + markers + "</g>\n";
 }
 
+std::string legend_entry(double x, const std::string& name, std::size_t index) {
+  const std::string color(colors[index % colors.size()]);
+  return "<g fill=\"" + color + "\"><path d=\"M" + number(x) + " 58H" + number(x + 26) + "\" stroke=\"" + color +
+         "\" stroke-width=\"2\"/>" + marker(x + 13, 58, index) + "</g>\n" +
+         text_at(x + 33, 62, " fill=\"#23282d\"", name);
+}
+
 std::string legend(const std::vector<PlotSeries>& series) {
   std::string out;
   double x = left;
   for (std::size_t i = 0; i < series.size(); ++i) {
-    const std::string color(colors[i % colors.size()]);
-    out += "<g fill=\"" + color + "\"><path d=\"M" + number(x) + " 58H" + number(x + 26) + "\" stroke=\"" + color +
-           "\" stroke-width=\"2\"/>" + marker(x + 13, 58, i) + "</g>\n";
-    out += text_at(x + 33, 62, " fill=\"#23282d\"", series[i].name);
+    out += legend_entry(x, series[i].name, i);
     // The text's width is not known without its font; 7.5 pixels a letter is generous at this size.
     x += 33 + 7.5 * static_cast<double>(series[i].name.size()) + 22;
   }
