@@ -50,7 +50,7 @@ if $all; then
   step asan build_and_test asan -LE 'desktop|fuzz'
   step tidy build tidy
   step benchmarks build release
-  for bench in build/release/bin/*_bench; do
+  for bench in build/release/bin/*bench*; do
     if [[ -x $bench ]]; then step "$(basename "$bench")" "$bench"; fi
   done
 fi
