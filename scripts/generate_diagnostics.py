@@ -28,6 +28,7 @@ def load():
         assert c["name"] not in names and c["number"] not in numbers, f"used twice: {c}"
         assert c["number"] // 1000 in blocks and c["severity"] in SEVERITIES, c
         assert isinstance(c["exit"], int) and c["message"] and c["help"], c
+        assert re.fullmatch(r"R-\d+\.\d+\.\d+", c.get("rule", "R-0.0.0")), c
         names.add(c["name"])
         numbers.add(c["number"])
     return codes, blocks
@@ -59,9 +60,9 @@ def md(codes, blocks):
         mine = [c for c in codes if c["number"] // 1000 == block]
         if not mine:
             continue
-        out += [f"## {block}xxx {title}", "", "| number | code | severity | exit | message | what to do |", "|---|---|---|---|---|---|"]
+        out += [f"## {block}xxx {title}", "", "| number | code | severity | exit | rule | message | what to do |", "|---|---|---|---|---|---|---|"]
         esc = lambda s: s.replace("|", "\\|").replace("<", "&lt;")
-        out += [f"| {c['number']} | `{c['name']}` | {c['severity']} | {c['exit']} | {esc(c['message'])} | {esc(c['help'])} |" for c in mine]
+        out += [f"| {c['number']} | `{c['name']}` | {c['severity']} | {c['exit']} | {c.get('rule', '')} | {esc(c['message'])} | {esc(c['help'])} |" for c in mine]
         out.append("")
     return "\n".join(out)
 

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+// macrostructures and unit cells, what they need and what their expressions see.
+#include "families.hpp"
+#include "walk.hpp"
+
+namespace meso {
+namespace {
+
+/// Document parameters, then the cell's own; in implicit bodies also x y z. Names were checked where they are declared.
+Scope body_scope(const Context& c, const UnitCell& cell) {
+  Scope scope(&c.parameters);
+  for (const CellParameter& p : cell.parameters) scope.add(p.name.text, "a parameter of the cell");
+  return scope;
+}
+
+void check_parameter_names(Context& c, const UnitCell& cell) {
+  Scope names(&c.parameters);
+  for (const CellParameter& p : cell.parameters) {
+    if (c.check_name(p, "id", p.name.text))
+      c.declare(names, p, "id", p.name.text, "a parameter of the unit cell '" + cell.id.text + "'");
+    check_bounds_order(c, p, p.min, p.max);
+  }
+}
+
+void check_box(Context& c, const CellBox& box, const Scope& scope) {
+  walk(box, ExpressionCheck{c, scope});
+  c.require_positive(box, "dx", box.dx);
+  c.require_positive(box, "dy", box.dy);
+  c.require_positive(box, "dz", box.dz);
+}
+
+void check_implicit(Context& c, const UnitCell& cell, const ImplicitBody& body, const Scope& outer) {
+  Scope scope(&outer);
+  for (const char* name : {"x", "y", "z"}) {
+    if (const std::string* taken = outer.find(name))
+      c.report(Code::name_duplicate, body, "", {name, *taken, "the coordinate " + std::string(name)});
+    scope.add(name, "a coordinate of the cell");
+  }
+  walk(body, ExpressionCheck{c, scope});
+  if (body.field.has_value() == body.surface.has_value())
+    c.report(Code::choice_needed, body, "", {"field and surface", body.field ? "both" : "none"});
+  c.require_positive(body, "thickness", body.thickness);
+  if (!cell.box) c.report(Code::box_needed, cell, "", {cell.id.text, "implicit bodies are cut to it"});
+}
+
+void check_body(Context& c, const UnitCell& cell, const Scope& scope) {
+  if (std::holds_alternative<std::monostate>(cell.body))
+    c.report(Code::content_needed, cell, "", {"unitCell", "a body", "none"});
+  if (const auto* csg = std::get_if<CsgBody>(&cell.body)) check_csg(c, *csg, scope);
+  if (const auto* beams = std::get_if<BeamsBody>(&cell.body)) check_beams(c, *beams, scope);
+  if (const auto* implicit = std::get_if<ImplicitBody>(&cell.body)) check_implicit(c, cell, *implicit, scope);
+  if (const auto* import = std::get_if<ImportBody>(&cell.body)) check_import(c, *import, scope);
+}
+
+}  // namespace
+
+void check_macrostructures(Context& c) {
+  for (const Macrostructure& m : c.document.macrostructures) {
+    check_placement(c, m.placement, c.parameters);
+    if (std::holds_alternative<std::monostate>(m.body))
+      c.report(Code::content_needed, m, "", {"macrostructure", "a body", "none"});
+    if (const auto* csg = std::get_if<CsgBody>(&m.body)) check_csg(c, *csg, c.parameters);
+    if (const auto* import = std::get_if<ImportBody>(&m.body)) check_import(c, *import, c.parameters);
+  }
+}
+
+void check_unit_cells(Context& c) {
+  for (const UnitCell& cell : c.document.unit_cells) {
+    check_parameter_names(c, cell);
+    const Scope scope = body_scope(c, cell);
+    if (cell.box) check_box(c, *cell.box, scope);
+    check_body(c, cell, scope);
+    if (cell.clip_to_box.value_or(false) && !cell.box)
+      c.report(Code::box_needed, cell, "clipToBox", {cell.id.text, "clipToBox cuts at it"});
+  }
+}
+
+}  // namespace meso
