@@ -41,6 +41,7 @@ struct PlacedCell {
   std::span<const std::int64_t> index;  ///< the index tuple: the cell's id
   CellMapping mapping = CellMapping::rigid;
   Affine world_from_cell;              ///< rigid: after all instructions
+  Vec3 global;                         ///< P(q), before any instruction
   std::span<const double> parameters;  ///< the cell's own, in order, in the document's unit
   std::span<const double> q;           ///< coordinates, one per axis
   std::array<double, 3> step{};        ///< conformal: size along axes 1, 2, 3
@@ -76,6 +77,9 @@ class CellStream {
 
   /// The cell's box in cell coordinates (mm); empty if the unit cell has none.
   [[nodiscard]] std::optional<BoxShape> cell_box(const PlacedCell& cell, DiagnosticSink& sink) const;
+  /// The space the cell takes up: its box in cell coordinates (rigid), or the volume element it becomes in the world
+  /// (conformal). Empty if the unit cell has no box, or if something was reported.
+  [[nodiscard]] std::optional<Shape> cell_region(const PlacedCell& cell, DiagnosticSink& sink) const;
   /// The cell's body in cell coordinates (rigid) or in the world (conformal: boxes become volume elements, straight
   /// beams run between mapped nodes; anything else is a diagnostic). Equal `parameters` give equal shapes for rigid
   /// cells unless shape_varies().

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// Bodies of cells and macrostructures: every expression bound once, then shapes from slots as often as needed.
+
+#include <functional>
+#include <unordered_map>
+#include <vector>
+
+#include "evaluation_impl.hpp"
+#include "meso/eval/shape.hpp"
+
+namespace meso::eval {
+
+/// The bound expressions of a body, by their place in the document. Looked up only, never walked.
+class BodyTable {
+ public:
+  [[nodiscard]] static std::optional<BodyTable> make(const EvaluationData& data, const Macrostructure& macrostructure,
+                                                     const Scope& scope, const Report& report);
+  /// Box and body. `scope` knows document parameters and the cell's own.
+  [[nodiscard]] static std::optional<BodyTable> make(const EvaluationData& data, const UnitCell& cell,
+                                                     const Scope& scope, const Report& report);
+
+  [[nodiscard]] const BoundExpression& at(const Expression& e) const { return bound_.find(&e)->second.front(); }
+  [[nodiscard]] const std::vector<BoundExpression>& at(const ExpressionList& e) const {
+    return bound_.find(&e)->second;
+  }
+
+ private:
+  std::unordered_map<const void*, std::vector<BoundExpression>> bound_;
+};
+
+/// How a cell's nodes are placed, beyond what the slots say. Lengths in the document's unit.
+struct NodeRules {
+  /// Where a node stands that the body puts at p; absent: there.
+  std::function<Vec3(Vec3 p)> position{};
+  /// The slots for the expressions of a node that stands at `position(p)`; false if something was reported. Absent:
+  /// the same everywhere.
+  std::function<bool(Vec3 placed, std::vector<double>& slots)> slots{};
+};
+
+[[nodiscard]] std::optional<Shape> make_shape(const EvaluationData& data, const BodyTable& table,
+                                              const Macrostructure& macrostructure, std::span<const double> slots,
+                                              const Report& report);
+[[nodiscard]] std::optional<Shape> make_shape(const EvaluationData& data, const BodyTable& table, const UnitCell& cell,
+                                              std::span<const double> slots, const Report& report,
+                                              const NodeRules& rules);
+[[nodiscard]] std::optional<BoxShape> make_box(const EvaluationData& data, const BodyTable& table, const CellBox& box,
+                                               std::span<const double> slots, const Report& report);
+
+}  // namespace meso::eval

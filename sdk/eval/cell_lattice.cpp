@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+// Patterns whose cells are translates of one lattice.
+#include <algorithm>
+
+#include "cell_stream_impl.hpp"
+
+namespace meso::eval {
+namespace {
+
+bool is_constant(const std::optional<BoundExpression>& e) { return !e || e->level == constant_level; }
+
+bool is_regular(const LoopProgram& loop) {
+  return loop.places.empty() && !loop.cumulative && !loop.position && is_constant(loop.count) &&
+         is_constant(loop.start) && is_constant(loop.spacing) &&
+         (!loop.direction || std::all_of(loop.direction->begin(), loop.direction->end(),
+                                         [](const BoundExpression& e) { return e.level == constant_level; }));
+}
+
+bool is_regular(const PatternProgram& program) {
+  return program.mapping == CellMapping::rigid && !program.drops_cells && program.node_statements.empty() &&
+         program.turn_level == constant_level && program.loops.size() <= 3 &&
+         std::all_of(program.loops.begin(), program.loops.end(),
+                     [](const LoopProgram& loop) { return is_regular(loop); }) &&
+         std::all_of(program.statements.begin(), program.statements.end(),
+                     [](const Statement& s) { return s.level == constant_level; });
+}
+
+}  // namespace
+
+std::optional<CellStream::Lattice> CellStream::lattice() const {
+  const PatternProgram& program = *impl_->program;
+  if (size() == 0 || !is_regular(program)) return std::nullopt;
+  Lattice result;
+  const std::vector<std::int64_t> counts = extents();
+  std::copy(counts.begin(), counts.end(), result.count.begin());
+
+  DiagnosticSink failed;
+  Vec3 columns[3];
+  std::uint64_t ordinal_step = 1;
+  Vec3 origin;
+  const auto position_of = [&](std::uint64_t ordinal, Affine& placed) {
+    return visit(
+        ordinal, ordinal + 1, [&](const PlacedCell& c) { return placed = c.world_from_cell, true; }, failed);
+  };
+  if (!position_of(0, result.world_from_first)) return std::nullopt;
+  origin = result.world_from_first.translation;
+  // The longest way along each index gives the step to the last digit that the cells themselves have.
+  for (std::size_t k = counts.size(); k-- > 0;) {
+    const auto steps = static_cast<std::uint64_t>(counts[k]) - 1;
+    Affine last;
+    if (steps > 0) {
+      if (!position_of(steps * ordinal_step, last)) return std::nullopt;
+      columns[k] = (last.translation - origin) / static_cast<double>(steps);
+      if (norm(columns[k]) == 0) return std::nullopt;
+    }
+    ordinal_step *= static_cast<std::uint64_t>(counts[k]);
+  }
+  result.lattice = Mat3::from_columns(columns[0], columns[1], columns[2]);
+  return result;
+}
+
+}  // namespace meso::eval
