@@ -78,6 +78,8 @@ class BoundaryIntegral {
     double u_min = 0, u_max = 0, v_min = 0, v_max = 0;
     BRepTools::UVBounds(face, u_min, u_max, v_min, v_max);
     breaks_ = u_breaks(surface_, u_min, u_max);
+    for (const double u : {u_min, (u_min + u_max) / 2, u_max})
+      for (const double v : {v_min, v_max}) reach_ = std::max(reach_, surface_.Value(u, v).XYZ().Modulus());
     for (TopExp_Explorer it(face.Oriented(TopAbs_FORWARD), TopAbs_EDGE); it.More(); it.Next())
       add_edge(TopoDS::Edge(it.Current()), face);
   }
@@ -97,7 +99,8 @@ class BoundaryIntegral {
   }
 
   struct Piece {
-    Components sum{}, magnitude{};
+    Components sum{};
+    double area = 0;  // of the strips under the piece, not cancelled
   };
 
   void add_span(const Geom2dAdaptor_Curve& curve, double a, double b, double sign) {
@@ -105,17 +108,15 @@ class BoundaryIntegral {
     refine(curve, a, b, whole, sign, 0);
   }
 
-  // Halving until the halves agree with the whole, relative to what was summed: cancelling sums must not refine for
-  // ever.
+  // Halving until the halves agree with the whole, in units of the area and the distance from the origin: many of the
+  // sums cancel to nothing, so their own size is no measure.
   void refine(const Geom2dAdaptor_Curve& curve, double a, double b, const Piece& whole, double sign, int depth) {
-    const bool flat = std::ranges::all_of(whole.magnitude, [](double m) { return m == 0; });
-    if (flat) return;
+    if (whole.area == 0) return;
     const double middle = (a + b) / 2;
     const Piece left = integrate(curve, a, middle), right = integrate(curve, middle, b);
     bool agrees = true;
     for (std::size_t i = 0; i < component_count; ++i)
-      agrees = agrees &&
-               std::abs(left.sum[i] + right.sum[i] - whole.sum[i]) <= 1e-12 * (left.magnitude[i] + right.magnitude[i]);
+      agrees = agrees && std::abs(left.sum[i] + right.sum[i] - whole.sum[i]) <= 1e-12 * whole.area * unit_of(i);
     if (agrees || depth == 8) {
       add(total_, sign, left.sum);
       add(total_, sign, right.sum);
@@ -123,6 +124,11 @@ class BoundaryIntegral {
     }
     refine(curve, a, middle, left, sign, depth + 1);
     refine(curve, middle, b, right, sign, depth + 1);
+  }
+
+  [[nodiscard]] double unit_of(std::size_t component) const {
+    const bool is_volume = component >= 1 && component <= 3, is_centroid = component >= 7;
+    return is_volume ? reach_ : is_centroid ? reach_ * reach_ : 1;
   }
 
   [[nodiscard]] Piece integrate(const Geom2dAdaptor_Curve& curve, double a, double b) const {
@@ -134,7 +140,7 @@ class BoundaryIntegral {
       if (tangent.Y() == 0) return;  // along u: dv is zero
       const Components inner = integrate_u(uv.X(), uv.Y());
       add(piece.sum, weight * tangent.Y(), inner);
-      for (std::size_t i = 0; i < component_count; ++i) piece.magnitude[i] += std::abs(weight * tangent.Y() * inner[i]);
+      piece.area += std::abs(weight * tangent.Y() * inner[0]);
     });
     return piece;
   }
@@ -154,6 +160,7 @@ class BoundaryIntegral {
 
   GeomAdaptor_Surface surface_;
   std::vector<double> breaks_;
+  double reach_ = 0;  // of the face from the origin, roughly
   Components total_{};
 };
 

@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "in_memory.hpp"
+
+#include <ShapeFix_Shape.hxx>
+
+#include "meso/brep/instance_map.hpp"
+#include "meso/brep/placement.hpp"
+#include "value_geometry.hpp"
+
+namespace meso::brep {
+namespace {
+
+constexpr double tolerance = 1e-7;  // OpenCASCADE's own notion of the same point
+
+class ShellAssembler {
+ public:
+  explicit ShellAssembler(const Shell& shell) : shell_(shell), template_(*shell.geometry) {}
+
+  TopoDS_Shell assemble() {
+    TopoDS_Shell result;
+    builder_.MakeShell(result);
+    shell_.visit([&](const FaceInstance& instance) {
+      builder_.Add(result, make_face(template_.faces[instance.face], instance.cell));
+    });
+    result.Closed(Standard_True);
+    return result;
+  }
+
+ private:
+  // Add() complements children of a reversed parent: the face stays forward until it is whole.
+  TopoDS_Face make_face(const FaceTemplate& face, const Index3& cell) {
+    TopoDS_Face result;
+    const Handle(Geom_Surface) surface = to_geom(face.surface);
+    surface->Transform(placed(cell));
+    builder_.MakeFace(result, surface, tolerance);
+    for (const auto& loop : face.loops) {
+      TopoDS_Wire wire;
+      builder_.MakeWire(wire);
+      for (const Coedge& use : loop)
+        if (!template_.edges[use.edge].degenerate)  // the fixer adds those, with their pcurves
+          builder_.Add(wire, edge(use.edge, cell + use.offset)
+                                 .Oriented(use.reversed != face.reversed ? TopAbs_REVERSED : TopAbs_FORWARD));
+      wire.Closed(Standard_True);
+      if (TopoDS_Iterator(wire).More()) builder_.Add(result, wire);
+    }
+    if (face.reversed) result.Reverse();
+    return result;
+  }
+
+  TopoDS_Edge edge(std::uint32_t index, const Index3& cell) {
+    const auto [known, fresh] = edges_.find_or_add(index, cell);
+    if (!fresh) return edge_shapes_[known];
+    known = static_cast<std::uint32_t>(edge_shapes_.size());
+    const EdgeTemplate& e = template_.edges[index];
+    const Vec3 from = template_.vertices[e.vertex[0]] + cell_origin(template_, e.vertex_offset[0]);
+    const Vec3 to = template_.vertices[e.vertex[1]] + cell_origin(template_, e.vertex_offset[1]);
+    const bool closed = e.vertex[0] == e.vertex[1] && e.vertex_offset[0] == e.vertex_offset[1];
+    const CurveRange range = range_between(e.curve, from, to, closed);
+    const double scale = placed(cell).ScaleFactor();
+    const bool by_length = std::holds_alternative<Line>(e.curve);  // the only curve whose parameter is a length
+    const Handle(Geom_Curve) curve = to_geom(e.curve);
+    curve->Transform(placed(cell));
+    TopoDS_Edge result;
+    builder_.MakeEdge(result, curve, tolerance);
+    builder_.Add(result, vertex(e.vertex[0], cell + e.vertex_offset[0]).Oriented(TopAbs_FORWARD));
+    builder_.Add(result, vertex(e.vertex[1], cell + e.vertex_offset[1]).Oriented(TopAbs_REVERSED));
+    builder_.Range(result, range.first * (by_length ? scale : 1), range.last * (by_length ? scale : 1));
+    edge_shapes_.push_back(result);
+    return result;
+  }
+
+  TopoDS_Vertex vertex(std::uint32_t index, const Index3& cell) {
+    const auto [known, fresh] = vertices_.find_or_add(index, cell);
+    if (!fresh) return vertex_shapes_[known];
+    known = static_cast<std::uint32_t>(vertex_shapes_.size());
+    TopoDS_Vertex result;
+    builder_.MakeVertex(result, to_pnt(template_.vertices[index]).Transformed(placed(cell)), tolerance);
+    vertex_shapes_.push_back(result);
+    return result;
+  }
+
+  [[nodiscard]] gp_Trsf placed(const Index3& cell) const {
+    const Mat3& m = shell_.placement.linear;
+    const Vec3 t = shell_.placement * cell_origin(template_, cell);
+    gp_Trsf result;
+    result.SetValues(m(0, 0), m(0, 1), m(0, 2), t.x, m(1, 0), m(1, 1), m(1, 2), t.y, m(2, 0), m(2, 1), m(2, 2), t.z);
+    return result;
+  }
+
+  const Shell& shell_;
+  const Template& template_;
+  BRep_Builder builder_;
+  InstanceMap<std::uint32_t> vertices_, edges_;
+  std::vector<TopoDS_Vertex> vertex_shapes_;
+  std::vector<TopoDS_Edge> edge_shapes_;
+};
+
+TopoDS_Shape assemble(const Solid& solid) {
+  BRep_Builder builder;
+  TopoDS_Solid result;
+  builder.MakeSolid(result);
+  builder.Add(result, ShellAssembler(solid.outer).assemble());
+  for (const Shell& hollow : solid.voids) builder.Add(result, ShellAssembler(hollow).assemble());
+  ShapeFix_Shape fix(result);  // projects pcurves, adds seams and degenerate edges as the STEP reader does
+  fix.Perform();
+  return fix.Shape();
+}
+
+}  // namespace
+
+std::optional<TopoDS_Shape> to_shape(const Body& body, DiagnosticSink& sink) {
+  try {
+    if (body.solids.size() == 1) return assemble(body.solids[0]);
+    BRep_Builder builder;
+    TopoDS_Compound all;
+    builder.MakeCompound(all);
+    for (const Solid& solid : body.solids) builder.Add(all, assemble(solid));
+    return all;
+  } catch (const Standard_Failure& failure) {
+    sink.report({.code = Code::geometry_kernel, .args = {"building a shape", failure.GetMessageString()}});
+    return std::nullopt;
+  }
+}
+
+}  // namespace meso::brep
