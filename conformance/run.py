@@ -60,7 +60,7 @@ def compare_cells(expected, answer, columns):
     want, found = expected["cells"], answer.get("cells", [])
     if len(want) != len(found):
         raise Mismatch(f"cells: expected {len(want)}, found {len(found)}")
-    scale = max((abs(v) for cell in want for v in cell["matrix"]), default=0.0)
+    scale = max((abs(v) for cell in want for v in cell.get("matrix", [])), default=0.0)
     for w, f in zip(want, found):
         name = f"cell {w['index']}"
         if w["index"] != f["index"]:

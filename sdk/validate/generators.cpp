@@ -12,7 +12,7 @@ namespace {
 class GeneratorCheck {
  public:
   GeneratorCheck(Context& c, const Pattern& pattern, const std::vector<Axis>* axes, Scope& names)
-      : c_(c), pattern_(pattern), axes_(axes), names_(names), outer_indices_(&c.parameters) {}
+      : c_(c), pattern_(pattern), axes_(axes), names_(names), outer_names_(&c.parameters) {}
 
   void operator()(const Loop& loop);
   void operator()(const Scatter& scatter);
@@ -47,20 +47,21 @@ class GeneratorCheck {
   const Pattern& pattern_;
   const std::vector<Axis>* axes_;
   Scope& names_;
-  Scope outer_indices_;  ///< what a loop sees: parameters and the indices of the loops around it
+  Scope outer_names_;  ///< what a loop sees: parameters, indices and axes of the loops around it
   std::set<std::size_t> used_;
 };
 
 void GeneratorCheck::expressions(const Loop& loop) {
-  if (c_.check(loop, "count", loop.count, outer_indices_))
+  if (c_.check(loop, "count", loop.count, outer_names_))
     require_whole(c_, loop, "count", ExpressionList{loop.count.text}, 0);
-  (void)c_.check(loop, "x", loop.x, outer_indices_);
-  (void)c_.check(loop, "y", loop.y, outer_indices_);
-  (void)c_.check(loop, "z", loop.z, outer_indices_);
-  (void)c_.check(loop, "start", loop.start, outer_indices_);
-  outer_indices_.add(loop.index.text, "an index");
-  (void)c_.check(loop, "spacing", loop.spacing, outer_indices_);
-  (void)c_.check(loop, "position", loop.position, outer_indices_);
+  (void)c_.check(loop, "x", loop.x, outer_names_);
+  (void)c_.check(loop, "y", loop.y, outer_names_);
+  (void)c_.check(loop, "z", loop.z, outer_names_);
+  (void)c_.check(loop, "start", loop.start, outer_names_);
+  outer_names_.add(loop.index.text, "an index");
+  (void)c_.check(loop, "spacing", loop.spacing, outer_names_);
+  (void)c_.check(loop, "position", loop.position, outer_names_);
+  if (loop.axis) outer_names_.add(loop.axis->text, "an axis");
 }
 
 void GeneratorCheck::operator()(const Loop& loop) {
