@@ -21,7 +21,7 @@ struct ValueFault {
   std::vector<std::string> args;
 };
 
-/// [A-Za-z_][A-Za-z0-9_]*
+/// [A-Za-z_][A-Za-z0-9_]*
 [[nodiscard]] bool is_name(std::string_view text);
 
 std::optional<ValueFault> parse_value(std::string_view attribute, std::string_view text, std::string& value);

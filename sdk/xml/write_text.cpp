@@ -5,7 +5,7 @@
 
 namespace meso::xml {
 
-// tabs and line ends would come back from an attribute as spaces, a carriage return from text as a line feed.
+// tabs and line ends would come back from an attribute as spaces, a carriage return from text as a line feed.
 std::string escaped_attribute(std::string_view value) {
   std::string out;
   out.reserve(value.size());
