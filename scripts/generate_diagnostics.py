@@ -28,7 +28,7 @@ def load():
         assert c["name"] not in names and c["number"] not in numbers, f"used twice: {c}"
         assert c["number"] // 1000 in blocks and c["severity"] in SEVERITIES, c
         assert isinstance(c["exit"], int) and c["message"] and c["help"], c
-        assert re.fullmatch(r"R-\d+\.\d+\.\d+", c.get("rule", "R-0.0.0")), c
+        assert re.fullmatch(r"R-\d+\.\d+(\.\d+)?", c.get("rule", "R-0.0")), c
         names.add(c["name"])
         numbers.add(c["number"])
     return codes, blocks
