@@ -58,8 +58,11 @@ std::string_view name_of(BOPAlgo_Operation operation) {
   return operation == BOPAlgo_FUSE ? "union" : operation == BOPAlgo_COMMON ? "intersection" : "difference";
 }
 
+/// Of edges and their ends.
 double edge_tolerance(const TopoDS_Shape& shape) {
   double largest = 0;
+  for (TopExp_Explorer it(shape, TopAbs_VERTEX); it.More(); it.Next())
+    largest = std::max(largest, BRep_Tool::Tolerance(TopoDS::Vertex(it.Current())));
   for (TopExp_Explorer it(shape, TopAbs_EDGE); it.More(); it.Next())
     largest = std::max(largest, BRep_Tool::Tolerance(TopoDS::Edge(it.Current())));
   return largest;

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// A part of a document as an exact body.
+//
+//   DiagnosticSink sink;
+//   auto evaluation = eval::Evaluation::make(checked, {}, sink);
+//   if (auto made = brep::realise_build(*evaluation, {}, {}, sink)) write_step(made->body, ...);
+//
+// Three ways lead to a body, the first that fits is taken: a lattice aligned with its macrostructure becomes one
+// repeated template ("lattice"); cells that keep clear of the macrostructure's boundary and of each other become solids
+// or voids of their own ("cells"); what is left is joined by general booleans, each checked ("boolean"). A part without
+// steps is its macrostructure ("direct").
+//
+// Units: millimetres, radians. Errors: an empty optional and GEOMETRY_*, IMPORT_*, LIMIT_* or BREP_NOT_REALISED in the
+// sink; never a wrong body. Cost: lattice, a second and 0.1 ms a cell; cells, about 1 ms each; boolean, 50 ms and more
+// for each solid, refused beyond `max_boolean_solids`. Thread rule: may run in several threads on different documents;
+// STEP files are read one at a time.
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "meso/brep/body.hpp"
+#include "meso/brep/lattice_body.hpp"
+#include "meso/eval/evaluation.hpp"
+
+namespace meso::brep {
+
+struct RealiseOptions {
+  std::optional<MeshFineness> mesh{};  ///< triangulate, too
+  RunOptions run{};
+  std::size_t max_boolean_solids = 600;  ///< that general booleans may have to join in one step
+};
+
+struct CellCounts {
+  std::uint64_t placed = 0;    ///< by the generators, before `when`
+  std::uint64_t kept = 0;      ///< that take part in the result
+  std::uint64_t crossing = 0;  ///< kept, and cut by the macrostructure's boundary
+  std::size_t fragments = 0;   ///< solids beyond the largest that a cut has left loose
+};
+
+struct Realisation {
+  Body body;
+  CellCounts cells;
+  std::string path;  ///< "direct", "lattice", "cells" or "boolean"; the last that was needed
+  double evaluate_seconds = 0, realise_seconds = 0;
+};
+
+[[nodiscard]] std::optional<Realisation> realise(const eval::Evaluation& evaluation, const Part& part,
+                                                 const RealiseOptions& options, DiagnosticSink& sink);
+
+/// What `build` lists, each item placed; with `part_id` that part alone; without a build the only part.
+[[nodiscard]] std::optional<Realisation> realise_build(const eval::Evaluation& evaluation,
+                                                       std::optional<std::string_view> part_id,
+                                                       const RealiseOptions& options, DiagnosticSink& sink);
+
+}  // namespace meso::brep

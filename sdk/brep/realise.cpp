@@ -1,0 +1,215 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "meso/brep/realise.hpp"
+
+#include <algorithm>
+#include <chrono>
+
+#include "realise_fold.hpp"
+#include "realise_lattice.hpp"
+#include "shape_to_body.hpp"
+#include "solid_primitive.hpp"
+#include "solid_shape.hpp"
+
+namespace meso::brep {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+
+/// A body while the fold goes on: solids, or, after the last step, the repeated template of a lattice.
+struct Folded {
+  Solids solids;
+  std::optional<Body> body;
+};
+
+class PartFold {
+ public:
+  PartFold(const eval::Evaluation& evaluation, const RealiseOptions& options, DiagnosticSink& sink)
+      : evaluation_(evaluation), options_(options), context_{evaluation.checked().source(), options.run, sink} {}
+
+  std::optional<Folded> fold(const Part& part, bool may_be_lattice) {
+    Folded state;
+    if (part.macrostructure) {
+      auto solids = macrostructure(part.macrostructure->text);
+      if (!solids) return {};
+      state.solids = std::move(*solids);
+    }
+    for (std::size_t i = 0; i < part.steps.size(); ++i) {
+      options_.run.report("realise", static_cast<double>(i) / static_cast<double>(part.steps.size()));
+      const bool last = i + 1 == part.steps.size();
+      if (!step(state, part, part.steps[i], may_be_lattice && last)) return {};
+    }
+    return state;
+  }
+
+  CellCounts counts;
+  std::string path = "direct";
+
+ private:
+  bool step(Folded& state, const Part& part, const Apply& apply, bool may_be_lattice) {
+    FoldContext context{context_, apply, 0, options_.max_boolean_solids};
+    if (apply.clearance) {
+      const auto clearance = evaluation_.value(*apply.clearance, apply.id_in_source, "clearance", context_.sink);
+      if (!clearance) return false;
+      context.clearance = *clearance * millimeters_per(evaluation_.document().unit);
+    }
+    const std::size_t solids_before = state.solids.size();
+    std::optional<FoldStep> made;
+    if (apply.pattern) {
+      const Pattern* pattern = evaluation_.find_pattern(apply.pattern->text);
+      const auto cells = pattern != nullptr ? evaluation_.cells(*pattern, context_.sink) : std::nullopt;
+      if (!cells) return false;
+      if (may_be_lattice && try_lattice(state, apply, *cells)) return true;
+      if (context_.sink.has_errors()) return false;
+      made = apply_cells(state.solids, *cells, context, counts);
+    } else if (apply.part) {
+      made = apply_part(state.solids, apply, context);
+    }
+    if (!made) return false;
+    state.solids = std::move(made->solids);
+    path = made->used_booleans ? "boolean" : "cells";
+    return settle_fragments(state.solids, solids_before, context, part.id.text, counts);
+  }
+
+  bool try_lattice(Folded& state, const Apply& apply, const eval::CellStream& cells) {
+    const bool clips = apply.operation == ApplyOperation::intersection &&
+                       apply.boundary.value_or(BoundaryRule::clip) == BoundaryRule::clip &&
+                       apply.fragments.value_or(FragmentRule::keep) == FragmentRule::keep;
+    if (!clips || cells.size() > options_.run.max_cells) return false;
+    auto lattice = lattice_part(state.solids, cells, options_.mesh, context_);
+    if (!lattice) return false;
+    counts.placed += cells.size();
+    counts.kept += lattice->kept;
+    counts.fragments += lattice->body.fragments;
+    state.body = std::move(lattice->body);
+    path = "lattice";
+    return true;
+  }
+
+  std::optional<FoldStep> apply_part(const Solids& body, const Apply& apply, const FoldContext& context) {
+    const Part* part = evaluation_.find_part(apply.part->text);
+    const auto placement = evaluation_.placement(apply.placement, context_.sink);
+    if (part == nullptr || !placement) return {};
+    auto operand = fold(*part, false);
+    if (!operand) return {};
+    for (TopoDS_Shape& solid : operand->solids) solid = mapped(solid, *placement);
+    return apply_solids(body, operand->solids, context);
+  }
+
+  std::optional<Solids> macrostructure(const std::string& id) {
+    const auto& all = evaluation_.document().macrostructures;
+    const auto found = std::ranges::find(all, id, [](const Macrostructure& m) { return m.id.text; });
+    if (found == all.end()) return {};
+    const auto shape = evaluation_.shape(*found, context_.sink);
+    return shape ? solid_from_shape(*shape, {}, context_) : std::nullopt;
+  }
+
+  const eval::Evaluation& evaluation_;
+  const RealiseOptions& options_;
+  SolidContext context_;
+};
+
+/// Cells share faces under different locations; meshed once here, the copies find a mesh already.
+void mesh_once(const Solids& solids, const MeshFineness& mesh) {
+  TopTools_IndexedMapOfShape shells;
+  for (const TopoDS_Shape& solid : solids)
+    for (TopExp_Explorer it(solid, TopAbs_SHELL); it.More(); it.Next())
+      shells.Add(it.Current().Located(TopLoc_Location()).Oriented(TopAbs_FORWARD));
+  for (int i = 1; i <= shells.Extent(); ++i)
+    BRepMesh_IncrementalMesh(shells(i), mesh.deflection, false, mesh.angle, true);
+}
+
+std::optional<Body> to_body(const Solids& solids, const RealiseOptions& options, DiagnosticSink& sink) {
+  ShapeToBodyOptions to_body_options;
+  if (options.mesh) {
+    mesh_once(solids, *options.mesh);
+    to_body_options.mesh = MeshTolerance{options.mesh->deflection, options.mesh->angle};
+  }
+  TopoDS_Compound compound;
+  const BRep_Builder builder;
+  builder.MakeCompound(compound);
+  for (const TopoDS_Shape& solid : solids) builder.Add(compound, solid);
+  return shape_to_body(compound, to_body_options, sink);
+}
+
+void place(Body& body, const Affine& world_from_part) {
+  for (Solid& solid : body.solids) {
+    solid.outer.placement = world_from_part * solid.outer.placement;
+    for (Shell& hollow : solid.voids) hollow.placement = world_from_part * hollow.placement;
+  }
+}
+
+void append(Realisation& to, Realisation from) {
+  std::ranges::move(from.body.solids, std::back_inserter(to.body.solids));
+  to.body.fragments += from.body.fragments;
+  to.cells.placed += from.cells.placed;
+  to.cells.kept += from.cells.kept;
+  to.cells.crossing += from.cells.crossing;
+  to.cells.fragments += from.cells.fragments;
+  to.path = std::move(from.path);
+  to.evaluate_seconds += from.evaluate_seconds;
+  to.realise_seconds += from.realise_seconds;
+}
+
+}  // namespace
+
+std::optional<Realisation> realise(const eval::Evaluation& evaluation, const Part& part, const RealiseOptions& options,
+                                   DiagnosticSink& sink) {
+  const auto start = Clock::now();
+  const SolidContext context{evaluation.checked().source(), options.run, sink};
+  try {
+    PartFold fold(evaluation, options, sink);
+    auto folded = fold.fold(part, true);
+    if (!folded) return {};
+    if (folded->body ? folded->body->solids.empty() : folded->solids.empty()) {
+      context.report(Code::geometry_empty, part.id_in_source, {part.id.text});
+      return {};
+    }
+    Realisation result{{}, fold.counts, std::move(fold.path)};
+    auto body = folded->body ? std::move(folded->body) : to_body(folded->solids, options, sink);
+    if (!body) return {};
+    result.body = std::move(*body);
+    result.body.fragments = result.cells.fragments;
+    result.realise_seconds = seconds_since(start);
+    return result;
+  } catch (const Standard_Failure& failure) {
+    context.report(Code::geometry_kernel, part.id_in_source, {"realising a part", failure.GetMessageString()});
+    return {};
+  }
+}
+
+std::optional<Realisation> realise_build(const eval::Evaluation& evaluation, std::optional<std::string_view> part_id,
+                                         const RealiseOptions& options, DiagnosticSink& sink) {
+  const Document& document = evaluation.document();
+  if (part_id || document.build.empty()) {
+    const Part* part = part_id                      ? evaluation.find_part(*part_id)
+                       : document.parts.size() == 1 ? &document.parts.items.front()
+                                                    : nullptr;
+    if (part != nullptr) return realise(evaluation, *part, options, sink);
+    std::string ids;
+    for (const Part& p : document.parts) ids += (ids.empty() ? "" : ", ") + p.id.text;
+    sink.report({.code = Code::usage,
+                 .args = {part_id ? "there is no part '" + std::string(*part_id) + "'; the parts are " + ids
+                                  : "the document has no build; name one of its parts: " + ids}});
+    return {};
+  }
+  Realisation all;
+  for (const BuildItem& item : document.build) {
+    const Part* part = evaluation.find_part(item.part.text);
+    const auto placement = evaluation.placement(item.placement, sink);
+    if (part == nullptr || !placement) return {};
+    if (!is_similarity(*placement) || determinant(placement->linear) < 0) {
+      const SolidContext context{evaluation.checked().source(), options.run, sink};
+      context.report(Code::brep_not_realised, item.id_in_source, {"a build item that is mirrored or stretched"});
+      return {};
+    }
+    auto made = realise(evaluation, *part, options, sink);
+    if (!made) return {};
+    place(made->body, *placement);
+    append(all, std::move(*made));
+  }
+  return all;
+}
+
+}  // namespace meso::brep

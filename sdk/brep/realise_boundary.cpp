@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "realise_boundary.hpp"
+
+#include <algorithm>
+
+#include "boolean.hpp"
+
+namespace meso::brep {
+namespace {
+
+Box3 grown(const Box3& box) {
+  const Vec3 d{clear_distance, clear_distance, clear_distance};
+  return {box.min - d, box.max + d};
+}
+
+bool contains(const Box3& outer, const Box3& inner) {
+  for (std::size_t i = 0; i < 3; ++i)
+    if (inner.min[i] < outer.min[i] || inner.max[i] > outer.max[i]) return false;
+  return true;
+}
+
+}  // namespace
+
+Boundary::Boundary(const Solids& solids) : solids_(solids) {
+  for (const TopoDS_Shape& solid : solids_) {
+    boxes_.push_back(box_of(solid));
+    classifiers_.push_back(std::make_unique<BRepClass3d_SolidClassifier>(solid));
+    for (TopExp_Explorer it(solid, TopAbs_FACE); it.More(); it.Next())
+      surfaces_.emplace_back(TopoDS::Face(it.Current()));
+  }
+}
+
+Place Boundary::place(const CellSolids& cells, const CellSolid& cell) const {
+  const Box3 box = grown(cell.box);
+  if (std::ranges::none_of(boxes_, [&](const Box3& b) { return b.intersects(box); })) return Place::outside;
+  if (std::ranges::any_of(boxes_, [&](const Box3& b) { return contains(box, b); })) return Place::crossing;
+  const CoarseMesh mesh = cells.mesh_of(cell);
+  if (mesh.points.empty()) return Place::outside;
+  std::optional<Solids> body;
+  for (const CarrierSurface& surface : surfaces_) {
+    if (!surface.box().intersects(box) || proven_side(surface, mesh, clear_distance) != 0) continue;
+    if (!body) body = cells.solids_of(cell);
+    for (const TopoDS_Shape& solid : *body)
+      if (exact_distance(solid, surface.face()) <= clear_distance) return Place::crossing;
+  }
+  return solid_at(mesh.points.front()) >= 0 ? Place::inside : Place::outside;
+}
+
+double Boundary::distance(const Solids& body) const {
+  double nearest = HUGE_VAL;
+  for (const TopoDS_Shape& solid : body)
+    for (const CarrierSurface& surface : surfaces_) nearest = std::min(nearest, exact_distance(solid, surface.face()));
+  return nearest;
+}
+
+int Boundary::solid_at(Vec3 p) const {
+  for (std::size_t i = 0; i < classifiers_.size(); ++i) {
+    classifiers_[i]->Perform(to_pnt(p), Precision::Confusion());
+    if (classifiers_[i]->State() == TopAbs_IN) return static_cast<int>(i);
+  }
+  return -1;
+}
+
+}  // namespace meso::brep

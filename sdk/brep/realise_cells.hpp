@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// The placed cells of a pattern as solids: each different body is made once and placed often. Private.
+
+#include <optional>
+
+#include "meso/eval/evaluation.hpp"
+#include "realise_clearance.hpp"
+
+namespace meso::brep {
+
+/// A body that several cells have, up to a rigid movement.
+struct Prototype {
+  Solids solids;
+  Box3 box;
+  CoarseMesh mesh;
+  std::vector<CarrierSurface> surfaces;
+  bool is_simple = true;  ///< no solid has a void of its own
+};
+
+struct CellSolid {
+  std::size_t prototype = 0;
+  Affine placement;  ///< world_from_prototype, rigid
+  Box3 box;          ///< in the world
+};
+
+struct CellSolids {
+  std::vector<Prototype> prototypes;
+  std::vector<CellSolid> cells;  ///< in normative order
+
+  [[nodiscard]] Solids solids_of(const CellSolid& cell) const;
+  [[nodiscard]] CoarseMesh mesh_of(const CellSolid& cell) const;
+};
+
+/// Cell bodies, or the space the cells take up (their boxes). Empty with a diagnostic on any fault. May throw
+/// Standard_Failure.
+enum class CellPart { body, region };
+[[nodiscard]] std::optional<CellSolids> cell_solids(const eval::CellStream& cells, CellPart what,
+                                                    const SolidContext& context);
+
+/// For each cell, whether it touches or overlaps another. May throw Standard_Failure.
+[[nodiscard]] std::vector<bool> touching_cells(const CellSolids& cells);
+
+}  // namespace meso::brep

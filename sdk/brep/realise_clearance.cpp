@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "realise_clearance.hpp"
+
+#include <BRepExtrema_DistShapeShape.hxx>
+#include <algorithm>
+
+#include "boolean.hpp"
+#include "face_moments.hpp"
+
+namespace meso::brep {
+namespace {
+
+double distance_to_box(const Box3& box, Vec3 p) {
+  Vec3 d;
+  for (std::size_t i = 0; i < 3; ++i) d[i] = std::max({box.min[i] - p[i], 0.0, p[i] - box.max[i]});
+  return norm(d);
+}
+
+/// Halves a triangle along its edges until the surface is provably away from each piece.
+bool is_away(const CarrierSurface& surface, const std::array<Vec3, 3>& t, double margin, int side, int depth) {
+  const Vec3 centre = (t[0] + t[1] + t[2]) / 3;
+  const double reach = std::max({norm(t[0] - centre), norm(t[1] - centre), norm(t[2] - centre)});
+  const double distance = side * surface.signed_distance(centre);
+  if (distance > reach + margin) return true;
+  if (distance <= margin || depth == 0) return false;
+  const Vec3 ab = (t[0] + t[1]) / 2, bc = (t[1] + t[2]) / 2, ca = (t[2] + t[0]) / 2;
+  return is_away(surface, {t[0], ab, ca}, margin, side, depth - 1) &&
+         is_away(surface, {ab, t[1], bc}, margin, side, depth - 1) &&
+         is_away(surface, {ca, bc, t[2]}, margin, side, depth - 1) &&
+         is_away(surface, {ab, bc, ca}, margin, side, depth - 1);
+}
+
+bool is_away(const CarrierSurface& surface, const CoarseMesh& mesh, double margin, int side) {
+  constexpr int depth = 5;
+  return std::ranges::all_of(mesh.triangles, [&](const auto& t) {
+    return is_away(surface, {mesh.points[t[0]], mesh.points[t[1]], mesh.points[t[2]]}, margin, side, depth);
+  });
+}
+
+}  // namespace
+
+CarrierSurface::CarrierSurface(const TopoDS_Face& face) : face_(face), box_(face_box(face)) {
+  const BRepAdaptor_Surface surface(face, false);
+  type_ = surface.GetType();
+  const auto place = [&](const gp_Ax3& frame) {
+    origin_ = to_vec(frame.Location());
+    axis_ = to_vec(frame.Direction());
+  };
+  switch (type_) {
+    case GeomAbs_Plane:
+      place(surface.Plane().Position());
+      break;
+    case GeomAbs_Cylinder:
+      place(surface.Cylinder().Position());
+      radius_ = surface.Cylinder().Radius();
+      break;
+    case GeomAbs_Cone:
+      place(surface.Cone().Position());
+      origin_ = to_vec(surface.Cone().Apex());
+      sine_ = std::fabs(std::sin(surface.Cone().SemiAngle()));
+      cosine_ = std::cos(surface.Cone().SemiAngle());
+      break;
+    case GeomAbs_Sphere:
+      place(surface.Sphere().Position());
+      radius_ = surface.Sphere().Radius();
+      break;
+    case GeomAbs_Torus:
+      place(surface.Torus().Position());
+      radius_ = surface.Torus().MajorRadius();
+      minor_ = surface.Torus().MinorRadius();
+      break;
+    default:
+      type_ = GeomAbs_OtherSurface;
+  }
+}
+
+double CarrierSurface::signed_distance(Vec3 p) const {
+  const Vec3 d = p - origin_;
+  const double along = dot(d, axis_), across = norm(d - along * axis_);
+  switch (type_) {
+    case GeomAbs_Plane:
+      return along;
+    case GeomAbs_Cylinder:
+      return across - radius_;
+    case GeomAbs_Cone:
+      return across * cosine_ - std::fabs(along) * sine_;
+    case GeomAbs_Sphere:
+      return norm(d) - radius_;
+    case GeomAbs_Torus:
+      return std::hypot(across - radius_, along) - minor_;
+    default:
+      return distance_to_box(box_, p);
+  }
+}
+
+bool CarrierSurface::is_convex_inside() const {
+  return type_ == GeomAbs_Plane || type_ == GeomAbs_Cylinder || type_ == GeomAbs_Sphere;
+}
+
+CoarseMesh CoarseMesh::placed(const Affine& placement) const {
+  CoarseMesh mesh = *this;
+  for (Vec3& p : mesh.points) p = placement * p;
+  return mesh;
+}
+
+CoarseMesh coarse_mesh(const Solids& solids) {
+  CoarseMesh mesh;
+  for (const TopoDS_Shape& solid : solids) {
+    const TopoDS_Shape copy = BRepBuilderAPI_Copy(solid).Shape();  // the original may get a finer mesh later
+    const Box3 box = box_of(copy);
+    const double deflection = 0.01 * norm(box.max - box.min);
+    mesh.error = std::max(mesh.error, 2 * deflection);  // the mesher's deflection is aimed at, not guaranteed
+    BRepMesh_IncrementalMesh(copy, deflection, false, 0.3);
+    for (TopExp_Explorer it(copy, TopAbs_FACE); it.More(); it.Next()) {
+      TopLoc_Location location;
+      const Handle(Poly_Triangulation) facets = BRep_Tool::Triangulation(TopoDS::Face(it.Current()), location);
+      if (facets.IsNull()) throw Standard_Failure("a face cannot be triangulated");
+      const auto first = static_cast<std::uint32_t>(mesh.points.size());
+      for (int i = 1; i <= facets->NbNodes(); ++i)
+        mesh.points.push_back(to_vec(facets->Node(i).Transformed(location.Transformation())));
+      for (int i = 1; i <= facets->NbTriangles(); ++i) {
+        int a = 0, b = 0, c = 0;
+        facets->Triangle(i).Get(a, b, c);
+        const auto index = [&](int node) { return first + static_cast<std::uint32_t>(node) - 1; };
+        mesh.triangles.push_back({index(a), index(b), index(c)});
+      }
+    }
+  }
+  return mesh;
+}
+
+int proven_side(const CarrierSurface& surface, const CoarseMesh& mesh, double gap) {
+  if (mesh.points.empty()) return 0;
+  const double margin = mesh.error + gap;
+  const int side = surface.signed_distance(mesh.points.front()) > 0 ? 1 : -1;
+  const bool corners_clear =
+      std::ranges::all_of(mesh.points, [&](Vec3 p) { return side * surface.signed_distance(p) > margin; });
+  if (!corners_clear) return 0;
+  if (surface.is_plane() || (side < 0 && surface.is_convex_inside())) return side;
+  return is_away(surface, mesh, margin, side) ? side : 0;
+}
+
+bool proven_apart(const std::vector<CarrierSurface>& surfaces, const CoarseMesh& first, const CoarseMesh& second) {
+  // The first body touches its own surfaces: it may reach over them by `slack`, and the second must stay beyond that.
+  const double slack = 2 * first.error;
+  return std::ranges::any_of(surfaces, [&](const CarrierSurface& surface) {
+    const int side = proven_side(surface, second, slack + first.error + clear_distance);
+    return side != 0 && is_away(surface, first, -slack, -side);
+  });
+}
+
+double exact_distance(const TopoDS_Shape& a, const TopoDS_Shape& b) {
+  BRepExtrema_DistShapeShape distance(a, b);
+  if (!distance.IsDone()) throw Standard_Failure("the distance of two bodies cannot be found");
+  return distance.Value();
+}
+
+}  // namespace meso::brep

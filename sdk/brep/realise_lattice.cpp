@@ -1,0 +1,222 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "realise_lattice.hpp"
+
+#include <GeomLib_IsPlanarSurface.hxx>
+#include <algorithm>
+
+#include "boolean.hpp"
+#include "lattice/shape_lattice.hpp"
+#include "solid_primitive.hpp"
+#include "solid_shape.hpp"
+
+namespace meso::brep {
+namespace {
+
+constexpr double plane_tolerance = 1e-6;  ///< millimetres between a face and the plane of cell boxes it stands for
+
+/// A pattern whose cell (i, j, k), counted along the box axes, is the first cell moved by i dx, j dy, k dz.
+struct AlignedLattice {
+  eval::BoxShape box;
+  Affine world_from_cell;  ///< of cell (0, 0, 0), rigid
+  std::array<std::int32_t, 3> count{1, 1, 1};
+};
+
+Affine inverse(const Affine& rigid) {
+  const Mat3 back = transposed(rigid.linear);
+  return {back, -(back * rigid.translation)};
+}
+
+bool is_rigid(const Affine& map) { return is_similarity(map) && std::fabs(determinant(map.linear) - 1) < 1e-12; }
+
+/// The box axis that `step` runs along, exactly one box long; -1 if there is none.
+int axis_of(Vec3 step, Vec3 size) {
+  for (std::size_t a = 0; a < 3; ++a) {
+    Vec3 expected;
+    expected[a] = size[a];
+    if (norm(step - expected) <= 1e-9 * size[a]) return static_cast<int>(a);
+  }
+  return -1;
+}
+
+std::optional<AlignedLattice> aligned(const eval::CellStream::Lattice& lattice, const eval::BoxShape& box) {
+  if (!is_rigid(lattice.world_from_first)) return {};
+  AlignedLattice out{box, lattice.world_from_first};
+  const Mat3 steps = transposed(lattice.world_from_first.linear) * lattice.lattice;
+  std::array<bool, 3> used{};
+  for (std::size_t loop = 0; loop < 3; ++loop) {
+    if (lattice.count[loop] == 1) continue;
+    const int axis = axis_of(steps.column(loop), box.size);
+    if (axis < 0 || used[static_cast<std::size_t>(axis)] || lattice.count[loop] > 1'000'000) return {};
+    used[static_cast<std::size_t>(axis)] = true;
+    out.count[static_cast<std::size_t>(axis)] = static_cast<std::int32_t>(lattice.count[loop]);
+  }
+  return out;
+}
+
+/// For each box axis, the box planes (numbered from the first cell's low side) that carry faces of the body; empty if a
+/// face lies elsewhere, or beyond the cells: what the outermost cells send over their boxes would be in the body, too.
+using PlaneNumbers = std::array<std::vector<std::int64_t>, 3>;
+
+std::optional<PlaneNumbers> face_planes(const Solids& solids_in_cell_frame, const AlignedLattice& lattice) {
+  const eval::BoxShape& box = lattice.box;
+  PlaneNumbers planes;
+  for (const TopoDS_Shape& solid : solids_in_cell_frame)
+    for (TopExp_Explorer it(solid, TopAbs_FACE); it.More(); it.Next()) {
+      const GeomLib_IsPlanarSurface planar(BRep_Tool::Surface(TopoDS::Face(it.Current())), 1e-7);
+      if (!planar.IsPlanar()) return {};
+      const Vec3 normal = to_vec(planar.Plan().Axis().Direction()), point = to_vec(planar.Plan().Location());
+      std::size_t axis = 0;
+      while (axis < 3 && std::fabs(normal[axis]) < 1 - 1e-14) ++axis;
+      if (axis == 3) return {};
+      const double number = (point[axis] - box.corner[axis]) / box.size[axis];
+      if (std::fabs(number - std::nearbyint(number)) * box.size[axis] > plane_tolerance) return {};
+      if (std::nearbyint(number) < 0 || std::nearbyint(number) > lattice.count[axis]) return {};
+      planes[axis].push_back(std::llround(number));
+    }
+  return planes;
+}
+
+/// The index grid cut by the face planes into blocks that are inside or outside as a whole.
+class Blocks {
+ public:
+  Blocks(const Solids& solids_in_cell_frame, const AlignedLattice& lattice, const PlaneNumbers& planes) {
+    for (std::size_t a = 0; a < 3; ++a) {
+      const std::int64_t count = lattice.count[a];
+      std::vector<std::int64_t>& cuts = cuts_[a];
+      cuts = planes[a];
+      std::erase_if(cuts, [&](std::int64_t n) { return n <= 0 || n >= count; });
+      cuts.push_back(0);
+      cuts.push_back(count);
+      std::ranges::sort(cuts);
+      cuts.erase(std::unique(cuts.begin(), cuts.end()), cuts.end());
+      for (std::size_t b = 0; b + 1 < cuts.size(); ++b)
+        block_of_[a].insert(block_of_[a].end(), static_cast<std::size_t>(cuts[b + 1] - cuts[b]), b);
+    }
+    probe(solids_in_cell_frame, lattice.box);
+  }
+
+  [[nodiscard]] bool inside(const Index3& cell) const {
+    return inside_[block(block_of_[0][static_cast<std::size_t>(cell[0])],
+                         block_of_[1][static_cast<std::size_t>(cell[1])],
+                         block_of_[2][static_cast<std::size_t>(cell[2])])];
+  }
+  [[nodiscard]] std::uint64_t kept() const { return kept_; }
+
+ private:
+  [[nodiscard]] std::size_t block(std::size_t x, std::size_t y, std::size_t z) const {
+    return (x * (cuts_[1].size() - 1) + y) * (cuts_[2].size() - 1) + z;
+  }
+
+  void probe(const Solids& solids, const eval::BoxShape& box) {
+    inside_.assign((cuts_[0].size() - 1) * (cuts_[1].size() - 1) * (cuts_[2].size() - 1), false);
+    for (const TopoDS_Shape& solid : solids) {
+      BRepClass3d_SolidClassifier classifier(solid);
+      for (std::size_t x = 0; x + 1 < cuts_[0].size(); ++x)
+        for (std::size_t y = 0; y + 1 < cuts_[1].size(); ++y)
+          for (std::size_t z = 0; z + 1 < cuts_[2].size(); ++z) {
+            const std::array<std::int64_t, 3> first{cuts_[0][x], cuts_[1][y], cuts_[2][z]};
+            const std::array<std::int64_t, 3> last{cuts_[0][x + 1], cuts_[1][y + 1], cuts_[2][z + 1]};
+            Vec3 p;
+            std::uint64_t cells = 1;
+            for (std::size_t a = 0; a < 3; ++a) {
+              p[a] = box.corner[a] + (static_cast<double>(first[a]) + 0.5) * box.size[a];
+              cells *= static_cast<std::uint64_t>(last[a] - first[a]);
+            }
+            classifier.Perform(to_pnt(p), Precision::Confusion());
+            if (classifier.State() != TopAbs_IN) continue;
+            inside_[block(x, y, z)] = true;
+            kept_ += cells;
+          }
+    }
+  }
+
+  std::array<std::vector<std::int64_t>, 3> cuts_;
+  std::array<std::vector<std::size_t>, 3> block_of_;
+  std::vector<bool> inside_;
+  std::uint64_t kept_ = 0;
+};
+
+/// Balls and frusta of beams; nothing where a cap is neither.
+std::optional<std::vector<CellPrimitive>> primitives_of(const eval::BeamsShape& beams) {
+  std::vector<CellPrimitive> out;
+  const auto add_ball = [&](Vec3 centre, double radius) {
+    const bool known = std::ranges::any_of(out, [&](const CellPrimitive& p) {
+      const Ball* ball = std::get_if<Ball>(&p);
+      return ball != nullptr && norm(ball->centre - centre) <= smallest_size && radius <= ball->radius + smallest_size;
+    });
+    if (!known) out.emplace_back(Ball{centre, radius});
+  };
+  for (const eval::StrutNode& node : beams.nodes)
+    if (node.ball_radius > 0) add_ball(node.position, node.ball_radius);
+  for (const eval::Strut& s : beams.struts) {
+    const Vec3 from = beams.nodes[s.from].position, to = beams.nodes[s.to].position;
+    out.emplace_back(Frustum{from, to, s.radius_from, s.radius_to});
+    for (const auto& [cap, at, radius] : {std::tuple{s.cap_from, from, s.radius_from}, {s.cap_to, to, s.radius_to}}) {
+      if (cap == BeamCap::butt) continue;
+      if (cap == BeamCap::hemisphere && s.radius_from != s.radius_to) return {};
+      add_ball(at, radius);
+    }
+  }
+  return out;
+}
+
+std::optional<CellShape> repeated_cell(const eval::Shape& shape, const eval::BoxShape& box,
+                                       const SolidContext& context) {
+  const Box3 bounds{box.corner, box.corner + box.size};
+  if (const auto* beams = std::get_if<eval::BeamsShape>(&shape.value))
+    if (auto primitives = primitives_of(*beams))
+      return cell_shape({.box = bounds, .primitives = std::move(*primitives)}, context.sink);
+  auto solids = solid_from_shape(shape, {}, context);
+  if (!solids || solids->empty()) return {};
+  return CellShape{.box = bounds, .solids = std::move(*solids), .primitives = {}};
+}
+
+struct FirstCell {
+  eval::BoxShape box;
+  eval::Shape shape;
+};
+
+std::optional<FirstCell> first_cell(const eval::CellStream& cells, DiagnosticSink& sink) {
+  std::optional<FirstCell> out;
+  const auto take = [&](const eval::PlacedCell& cell) {
+    const auto box = cells.cell_box(cell, sink);
+    if (!box) return false;
+    if (auto shape = cells.shape(cell, sink)) out = FirstCell{*box, std::move(*shape)};
+    return false;
+  };
+  (void)cells.visit(0, 1, take, sink);
+  return out;
+}
+
+}  // namespace
+
+std::optional<LatticePart> lattice_part(const Solids& macrostructure, const eval::CellStream& cells,
+                                        const std::optional<MeshFineness>& mesh, const SolidContext& context) {
+  const auto steps = cells.lattice();
+  if (!steps || cells.shape_varies()) return {};
+  const auto first = first_cell(cells, context.sink);
+  if (!first) return {};
+  const auto lattice = aligned(*steps, first->box);
+  if (!lattice) return {};
+  Solids in_cell_frame;
+  for (const TopoDS_Shape& solid : macrostructure)
+    in_cell_frame.push_back(mapped(solid, inverse(lattice->world_from_cell)));
+  const auto planes = face_planes(in_cell_frame, *lattice);
+  if (!planes) return {};
+  const auto cell = repeated_cell(first->shape, lattice->box, context);
+  if (!cell) return {};
+  const auto blocks = std::make_shared<const Blocks>(in_cell_frame, *lattice, *planes);
+  if (blocks->kept() == 0) return LatticePart{};
+  const LatticeSet set{.min = {0, 0, 0},
+                       .max = {lattice->count[0] - 1, lattice->count[1] - 1, lattice->count[2] - 1},
+                       .inside = [blocks](Index3 index) { return blocks->inside(index); }};
+  auto body = lattice_body(*cell, set, {.mesh = mesh}, context.sink);
+  if (!body) return {};
+  for (Solid& solid : body->solids) {
+    solid.outer.placement = lattice->world_from_cell * solid.outer.placement;
+    for (Shell& hollow : solid.voids) hollow.placement = lattice->world_from_cell * hollow.placement;
+  }
+  return LatticePart{std::move(*body), blocks->kept()};
+}
+
+}  // namespace meso::brep

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// The aligned case: a lattice whose cell boxes are each wholly inside or outside the macrostructure, because all faces
+// of the macrostructure lie on planes of the cell boxes. Private.
+
+#include <optional>
+
+#include "meso/brep/realise.hpp"
+#include "solid_context.hpp"
+
+namespace meso::brep {
+
+struct LatticePart {
+  Body body;
+  std::uint64_t kept = 0;
+};
+
+/// Macrostructure n union of the cells, if the case is the aligned one; else nothing, and no error in the sink. Errors
+/// of evaluation are reported. May throw Standard_Failure.
+[[nodiscard]] std::optional<LatticePart> lattice_part(const Solids& macrostructure, const eval::CellStream& cells,
+                                                      const std::optional<MeshFineness>& mesh,
+                                                      const SolidContext& context);
+
+}  // namespace meso::brep

@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: Apache-2.0
+// Documents to bodies: the way each is built, and its volume against the closed form.
+#include "meso/brep/realise.hpp"
+
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include "meso/brep/audit.hpp"
+#include "meso/brep/measure.hpp"
+#include "meso/validate/validate.hpp"
+#include "meso/xml/read.hpp"
+
+namespace meso::brep {
+namespace {
+
+using std::numbers::pi;
+
+const std::string head = R"(<meso xmlns="urn:meso-format:1.0" version="1.0" unit="millimeter">)";
+
+class Realise : public ::testing::Test {
+ protected:
+  std::optional<Realisation> realised(const std::string& sections, const RealiseOptions& options = {}) {
+    sink_ = DiagnosticSink();
+    auto read = read_document(head + sections + "</meso>", "test.meso", sink_);
+    if (!read) return {};
+    const auto checked = validate(std::move(read->document), std::move(read->source), ".", sink_);
+    if (!checked) return {};
+    const auto evaluation = eval::Evaluation::make(*checked, {}, sink_);
+    return evaluation ? realise_build(*evaluation, {}, options, sink_) : std::nullopt;
+  }
+  void TearDown() override {
+    if (HasFailure())
+      for (const Diagnostic& d : sink_.diagnostics()) std::puts(render(d).c_str());
+  }
+  Code first_code() const { return sink_.diagnostics().empty() ? Code{} : sink_.diagnostics().front().code; }
+
+  DiagnosticSink sink_;
+};
+
+std::string macrostructure(const std::string& csg) {
+  return "<macrostructures><macrostructure id=\"m\"><csg>" + csg + "</csg></macrostructure></macrostructures>";
+}
+std::string part(const std::string& apply, bool with_body = true) {
+  return std::string("<parts><part id=\"p\"") + (with_body ? " macrostructure=\"m\"" : "") + ">" + apply +
+         "</part></parts>";
+}
+/// A pattern "c" of balls of radius 1 on a grid along x, four millimetres apart.
+std::string balls(int count, double start, double spacing = 4) {
+  return "<unitCells><unitCell id=\"u\"><box x=\"-1\" y=\"-1\" z=\"-1\" dx=\"2\" dy=\"2\" dz=\"2\"/>"
+         "<csg><sphere radius=\"1\"/></csg></unitCell></unitCells><patterns><pattern id=\"c\" unitCell=\"u\"><loop "
+         "index=\"i\" axis=\"x\" count=\"" +
+         std::to_string(count) + "\" start=\"" + std::to_string(start) + "\" spacing=\"" + std::to_string(spacing) +
+         "\"/></pattern></patterns>";
+}
+const std::string block = macrostructure(R"(<box x="0" y="-5" z="-5" dx="20" dy="10" dz="10"/>)");
+constexpr double ball = 4.0 / 3 * pi;
+
+void expect_body(const std::optional<Realisation>& made, const std::string& path, double volume) {
+  ASSERT_TRUE(made);
+  EXPECT_EQ(made->path, path);
+  EXPECT_NEAR(measure(made->body).volume / volume, 1, 1e-6);
+  EXPECT_TRUE(audit(made->body).clean());
+}
+
+TEST_F(Realise, MacrostructureAlone) { expect_body(realised(block + part("")), "direct", 2000); }
+
+TEST_F(Realise, EnclosedCuttersBecomeVoidsOfOneTemplate) {
+  const auto made = realised(block + balls(4, 4) + part(R"(<apply pattern="c" operation="difference"/>)"));
+  expect_body(made, "cells", 2000 - 4 * ball);
+  ASSERT_EQ(made->body.solids.size(), 1u);
+  ASSERT_EQ(made->body.solids[0].voids.size(), 4u);
+  EXPECT_EQ(made->body.solids[0].voids[0].geometry, made->body.solids[0].voids[3].geometry);
+  EXPECT_EQ(made->cells.placed, 4u);
+  EXPECT_EQ(made->cells.kept, 4u);
+  EXPECT_EQ(made->cells.crossing, 0u);
+}
+
+TEST_F(Realise, CuttersAcrossTheBoundaryAreCutAndThoseOutsideDropped) {
+  // Balls at 0 (half), 4 ... 16 (whole), 20 (half), 24 (outside).
+  const auto made = realised(block + balls(7, 0) + part(R"(<apply pattern="c" operation="difference"/>)"));
+  expect_body(made, "boolean", 2000 - 5 * ball);
+  EXPECT_EQ(made->cells.kept, 6u);
+  EXPECT_EQ(made->cells.crossing, 2u);
+}
+
+TEST_F(Realise, OverlappingCutters) {
+  // Unit balls at distance 1 share lenses of 5 pi / 12.
+  const auto made = realised(block + balls(3, 5, 1) + part(R"(<apply pattern="c" operation="difference"/>)"));
+  expect_body(made, "boolean", 2000 - (3 * ball - 2 * 5 * pi / 12));
+}
+
+TEST_F(Realise, IntersectionKeepsWhatIsInsideAndClipsTheRest) {
+  const auto made = realised(block + balls(7, 0) + part(R"(<apply pattern="c" operation="intersection"/>)"));
+  expect_body(made, "boolean", 5 * ball);
+  EXPECT_EQ(made->body.solids.size(), 6u);
+  EXPECT_EQ(made->cells.fragments, 5u);
+}
+
+TEST_F(Realise, BoundaryRules) {
+  const auto apply = [](const char* rule) {
+    return part(std::string(R"(<apply pattern="c" operation="intersection" boundary=")") + rule + "\"/>");
+  };
+  expect_body(realised(block + balls(7, 0) + apply("dropPartial")), "cells", 4 * ball);
+  expect_body(realised(block + balls(7, 0) + apply("keepWhole")), "boolean", 6 * ball);
+}
+
+TEST_F(Realise, UnionOnNothing) {
+  const auto made = realised(balls(3, 0) + part(R"(<apply pattern="c" operation="union"/>)", false));
+  expect_body(made, "cells", 3 * ball);
+  EXPECT_EQ(made->body.solids.size(), 3u);
+}
+
+TEST_F(Realise, FragmentsAreAnErrorWhereTheRuleSaysSo) {
+  EXPECT_FALSE(
+      realised(block + balls(7, 0) + part(R"(<apply pattern="c" operation="intersection" fragments="error"/>)")));
+  EXPECT_EQ(first_code(), Code::geometry_fragments);
+}
+
+TEST_F(Realise, EmptyPart) {
+  EXPECT_FALSE(realised(block + balls(2, 40) + part(R"(<apply pattern="c" operation="intersection"/>)")));
+  EXPECT_EQ(first_code(), Code::geometry_empty);
+}
+
+TEST_F(Realise, TooManyBooleansAreRefused) {
+  RealiseOptions options;
+  options.max_boolean_solids = 2;
+  EXPECT_FALSE(realised(block + balls(3, 5, 1) + part(R"(<apply pattern="c" operation="difference"/>)"), options));
+  EXPECT_EQ(first_code(), Code::limit_booleans);
+}
+
+TEST_F(Realise, PolarSectorsInARingShareOneTemplate) {
+  const auto made = realised(macrostructure(R"(<cylinder x1="0" y1="0" z1="0" x2="0" y2="0" z2="4" radius="10"/>)") +
+                             R"(<coordinateSystems><coordinateSystem id="polar"><axis name="r" kind="distance" x="1"/>
+         <axis name="phi" kind="circular" z="1"/><axis name="z" kind="linear" z="1"/></coordinateSystem></coordinateSystems>
+         <unitCells><unitCell id="u"><box dx="1" dy="1" dz="1"/><csg><box x="0.1" y="0.1" z="0.1" dx="0.8" dy="0.8"
+         dz="0.8"/></csg></unitCell></unitCells>
+         <patterns><pattern id="c" unitCell="u" coordinateSystem="polar" mapping="conformal">
+         <loop index="i" axis="r" count="2" start="3" spacing="3"/><loop index="j" axis="phi" count="8"
+         spacing="45deg"/><loop index="k" axis="z" count="1" spacing="4"/></pattern></patterns>)" +
+                             part(R"(<apply pattern="c" operation="difference"/>)"));
+  const auto ring = [](double r0, double r1) { return (r1 * r1 - r0 * r0) * pi * 0.8 * 3.2; };
+  expect_body(made, "cells", 400 * pi - ring(3.3, 5.7) - ring(6.3, 8.7));
+  const auto& voids = made->body.solids.at(0).voids;
+  ASSERT_EQ(voids.size(), 16u);
+  EXPECT_EQ(voids[0].geometry, voids[7].geometry);
+  EXPECT_NE(voids[0].geometry, voids[8].geometry);
+}
+
+TEST_F(Realise, AlignedLattice) {
+  const auto made =
+      realised(macrostructure(R"(<box dx="10" dy="10" dz="15"/>)") +
+               R"(<unitCells><unitCell id="u"><box dx="5" dy="5" dz="5"/><beams radius="0.5" nodeRadius="0.9">
+         <node id="a" x="0" y="0" z="0"/><node id="b" x="5" y="0" z="0"/><node id="c" x="0" y="5" z="0"/>
+         <node id="d" x="5" y="5" z="0"/><node id="e" x="0" y="0" z="5"/><node id="f" x="5" y="0" z="5"/>
+         <node id="g" x="0" y="5" z="5"/><node id="h" x="5" y="5" z="5"/><node id="m" x="2.5" y="2.5" z="2.5"/>
+         <beam from="a" to="m"/><beam from="b" to="m"/><beam from="c" to="m"/><beam from="d" to="m"/>
+         <beam from="e" to="m"/><beam from="f" to="m"/><beam from="g" to="m"/><beam from="h" to="m"/></beams></unitCell>
+         </unitCells><patterns><pattern id="c" unitCell="u"><loop index="i" axis="z" count="4" spacing="5"/><loop
+         index="j" axis="x" count="3" spacing="5"/><loop index="k" axis="y" count="2" spacing="5"/></pattern></patterns>)" +
+               part(R"(<apply pattern="c" operation="intersection"/>)"));
+  expect_body(made, "lattice", 12 * 22.928246067499);
+  EXPECT_EQ(made->cells.placed, 24u);
+  EXPECT_EQ(made->cells.kept, 12u);
+  EXPECT_EQ(made->body.solids.size(), 1u);
+}
+
+}  // namespace
+}  // namespace meso::brep
