@@ -20,10 +20,10 @@ Index3 across(const Index3& cell, const CellFace& wall) {
 /// What stands where. Shared, unchanging, by the shells of the body.
 class Layout {
  public:
-  Layout(Quotient quotient, KeptCells cells) : quotient_(std::move(quotient)), cells_(std::move(cells)) {
+  Layout(Quotient quotient, KeptCells cells, CellKinds kinds)
+      : quotient_(std::move(quotient)), cells_(std::move(cells)), kinds_(std::move(kinds)) {
     for (const CellKind& kind : quotient_.kinds)
       clusters_ = std::max(clusters_, static_cast<std::uint32_t>(kind.cluster_lumps.size()));
-    for (std::uint32_t k = 0; k < quotient_.kinds.size(); ++k) kind_of_[quotient_.kinds[k].present] = k;
   }
 
   [[nodiscard]] const Quotient& quotient() const { return quotient_; }
@@ -33,10 +33,7 @@ class Layout {
   [[nodiscard]] std::uint32_t node(std::uint32_t cell, const CellFace& face) const {
     return cell * clusters_ + face.cluster;
   }
-  [[nodiscard]] std::uint32_t kind(const Index3& cell) const {
-    if (quotient_.kinds.size() == 1) return 0;
-    return kind_of_.at(present_neighbours(quotient_.neighbours, cells_, cell));
-  }
+  [[nodiscard]] std::uint32_t kind(const Index3& cell) const { return kinds_.of(cell, cells_); }
   /// Whether the wall of a kept cell is inside the solid.
   [[nodiscard]] bool cancelled(const Index3& cell, const CellFace& wall) const {
     const Index3 other = across(cell, wall);
@@ -89,7 +86,7 @@ class Layout {
   Quotient quotient_;
   KeptCells cells_;
   std::uint32_t clusters_ = 1;
-  std::map<std::uint64_t, std::uint32_t> kind_of_;
+  CellKinds kinds_;
   std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> split_;
 };
 
@@ -283,20 +280,34 @@ std::vector<ShellNodes> collect_shells(const Layout& layout, UnionFind& nodes, U
 
 }  // namespace
 
-std::uint64_t present_neighbours(const std::vector<Neighbour>& neighbours, const KeptCells& cells, const Index3& cell) {
-  std::uint64_t present = 0;
-  for (std::size_t n = 0; n < neighbours.size(); ++n)
-    if (cells.in_range(cell + neighbours[n].shift)) present |= std::uint64_t{1} << n;
-  return present;
+CellKinds::CellKinds(const Reach& reach, const KeptCells& cells) {
+  for (const Reach::Neighbour& neighbour : reach.neighbours) shifts_.push_back(neighbour.shift);
+  parts_.push_back(reach.parts_with(~std::uint64_t{0}));
+  if (shifts_.empty()) return;
+  for (std::uint32_t n = 0; n < cells.count(); ++n) {
+    const std::uint64_t mask = present(cells.cell(n), cells);
+    if (kinds_.contains(mask)) continue;
+    const std::vector<std::uint32_t> parts = reach.parts_with(mask);
+    const auto known = std::find(parts_.begin(), parts_.end(), parts);
+    kinds_[mask] = static_cast<std::uint32_t>(known - parts_.begin());
+    if (known == parts_.end()) parts_.push_back(parts);
+  }
 }
 
-std::optional<Body> assemble(Quotient quotient, KeptCells cells, DiagnosticSink& sink) {
+std::uint64_t CellKinds::present(const Index3& cell, const KeptCells& cells) const {
+  std::uint64_t mask = 0;
+  for (std::size_t n = 0; n < shifts_.size(); ++n)
+    if (cells.in_range(cell + shifts_[n])) mask |= std::uint64_t{1} << n;
+  return mask;
+}
+
+std::optional<Body> assemble(Quotient quotient, KeptCells cells, CellKinds kinds, DiagnosticSink& sink) {
   const auto fault = [&](const char* what) {
     sink.report({.code = Code::geometry_not_repeatable, .args = {what}});
     return std::nullopt;
   };
   const std::shared_ptr<const Template> geometry = quotient.geometry;
-  const auto layout = std::make_shared<Layout>(std::move(quotient), std::move(cells));
+  const auto layout = std::make_shared<Layout>(std::move(quotient), std::move(cells), std::move(kinds));
   if (any_walls_overlap(*layout)) return fault("cells meet in parts of their walls");
   Stitcher stitcher(*layout);
   if (!stitcher.stitch()) return fault("the walls of neighbouring cells do not close");

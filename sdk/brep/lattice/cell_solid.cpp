@@ -2,6 +2,7 @@
 #include "lattice/cell_solid.hpp"
 
 #include <BOPAlgo_PaveFiller.hxx>
+#include <set>
 
 #include "face_moments.hpp"
 #include "lattice/primitive_field.hpp"
@@ -122,6 +123,21 @@ bool on_union(const TopoDS_Shape& solid, const std::vector<CellPrimitive>& primi
   return true;
 }
 
+std::vector<Box3> boxes_of(const CellShape& cell) {
+  std::vector<Box3> boxes;
+  for (const CellPrimitive& primitive : cell.primitives) boxes.push_back(bounds(primitive));
+  if (!cell.primitives.empty()) return boxes;
+  for (const TopoDS_Shape& solid : cell.solids) {
+    Box3& box = boxes.emplace_back();
+    for (TopExp_Explorer it(solid, TopAbs_FACE); it.More(); it.Next()) {
+      const Box3 face = face_box(TopoDS::Face(it.Current()));
+      box.extend(face.min);
+      box.extend(face.max);
+    }
+  }
+  return boxes;
+}
+
 }  // namespace
 
 std::optional<CellShape> cell_shape(const LatticeCell& cell, DiagnosticSink& sink) {
@@ -141,68 +157,77 @@ std::optional<CellShape> cell_shape(const LatticeCell& cell, DiagnosticSink& sin
   return shape;
 }
 
-std::vector<Neighbour> reaching_neighbours(const CellShape& cell) {
+std::vector<std::uint32_t> Reach::parts_with(std::uint64_t present) const {
+  std::set<std::uint32_t> all(own.begin(), own.end());
+  for (std::size_t n = 0; n < neighbours.size(); ++n)
+    if (present >> n & 1) all.insert(neighbours[n].parts.begin(), neighbours[n].parts.end());
+  return {all.begin(), all.end()};
+}
+
+Reach reach_of(const CellShape& cell) {
   const Vec3 size = cell.size();
   const double tolerance = cell.tolerance();
-  std::vector<Box3> boxes;
+  const std::vector<Box3> boxes = boxes_of(cell);
   Box3 all;
-  for (std::size_t i = 0; i < cell.solids.size(); ++i) {
-    Box3 box;
-    if (cell.primitives.empty()) {
-      for (TopExp_Explorer it(cell.solids[i], TopAbs_FACE); it.More(); it.Next()) {
-        const Box3 face = face_box(TopoDS::Face(it.Current()));
-        box.extend(face.min);
-        box.extend(face.max);
-      }
-    } else {
-      box = bounds(cell.primitives[i]);
-    }
-    boxes.push_back(box);
+  for (const Box3& box : boxes) {
     all.extend(box.min);
     all.extend(box.max);
   }
+  Reach reach;
+  std::vector<CellPrimitive> placed;  // parallel to reach.parts, for beams
+  const auto add_from = [&](const Index3& shift, std::vector<std::uint32_t>& into) {
+    const bool is_own = shift == Index3{};
+    for (std::size_t s = 0; s < cell.solids.size(); ++s) {
+      const Vec3 by{shift[0] * size.x, shift[1] * size.y, shift[2] * size.z};
+      bool reaches = true;
+      for (std::size_t i = 0; i < 3; ++i)
+        reaches = reaches && boxes[s].min[i] + by[i] < cell.box.max[i] - tolerance &&
+                  boxes[s].max[i] + by[i] > cell.box.min[i] + tolerance;
+      if (!reaches) continue;
+      if (cell.primitives.empty()) {
+        into.push_back(static_cast<std::uint32_t>(reach.parts.size()));
+        reach.parts.push_back({s, shift});
+        continue;
+      }
+      const CellPrimitive primitive = translated(cell.primitives[s], by);
+      if (!is_own && covered(primitive, cell.primitives, cell.box)) continue;
+      const auto known = std::find_if(placed.begin(), placed.end(),
+                                      [&](const CellPrimitive& other) { return same(primitive, other, tolerance); });
+      into.push_back(static_cast<std::uint32_t>(known - placed.begin()));
+      if (known != placed.end()) continue;
+      placed.push_back(primitive);
+      reach.parts.push_back({s, shift});
+    }
+  };
+  add_from({}, reach.own);
   Index3 low{}, high{};  // shifts under which anything can reach the box
   for (std::size_t i = 0; i < 3; ++i) {
     low[i] = static_cast<std::int32_t>(std::ceil((cell.box.min[i] - all.max[i] + tolerance) / size[i]));
     high[i] = static_cast<std::int32_t>(std::floor((cell.box.max[i] - all.min[i] - tolerance) / size[i]));
   }
-  std::vector<Neighbour> neighbours;
   for (std::int32_t x = low[0]; x <= high[0]; ++x)
     for (std::int32_t y = low[1]; y <= high[1]; ++y)
       for (std::int32_t z = low[2]; z <= high[2]; ++z) {
-        if (x == 0 && y == 0 && z == 0) continue;
-        const Vec3 by{x * size.x, y * size.y, z * size.z};
-        Neighbour neighbour{.shift = {x, y, z}, .solids = {}};
-        for (std::size_t s = 0; s < cell.solids.size(); ++s) {
-          bool reaches = true;
-          for (std::size_t i = 0; i < 3; ++i)
-            reaches = reaches && boxes[s].min[i] + by[i] < cell.box.max[i] - tolerance &&
-                      boxes[s].max[i] + by[i] > cell.box.min[i] + tolerance;
-          if (reaches && !cell.primitives.empty())
-            reaches = !covered(translated(cell.primitives[s], by), cell.primitives, cell.box);
-          if (reaches) neighbour.solids.push_back(s);
-        }
-        if (!neighbour.solids.empty()) neighbours.push_back(neighbour);
+        Reach::Neighbour neighbour{.shift = {x, y, z}, .parts = {}};
+        if (neighbour.shift == Index3{}) continue;
+        add_from(neighbour.shift, neighbour.parts);
+        if (!neighbour.parts.empty()) reach.neighbours.push_back(neighbour);
       }
-  return neighbours;
+  return reach;
 }
 
-std::optional<TopoDS_Shape> solid_in_box(const CellShape& cell, const std::vector<Neighbour>& neighbours,
-                                         std::uint64_t present, DiagnosticSink& sink) {
+std::optional<TopoDS_Shape> solid_in_box(const CellShape& cell, const Reach& reach,
+                                         const std::vector<std::uint32_t>& parts, DiagnosticSink& sink) {
   const Vec3 size = cell.size();
   std::vector<TopoDS_Shape> solids;
   std::vector<CellPrimitive> primitives;
-  const auto add = [&](std::size_t index, Vec3 by) {
+  for (const std::uint32_t index : parts) {
+    const auto& [solid, shift] = reach.parts[index];
+    const Vec3 by{shift[0] * size.x, shift[1] * size.y, shift[2] * size.z};
     gp_Trsf move;
     move.SetTranslation(gp_Vec(by.x, by.y, by.z));
-    solids.push_back(cell.solids[index].Moved(TopLoc_Location(move)));
-    if (!cell.primitives.empty()) primitives.push_back(translated(cell.primitives[index], by));
-  };
-  for (std::size_t i = 0; i < cell.solids.size(); ++i) add(i, {});
-  for (std::size_t n = 0; n < neighbours.size(); ++n) {
-    if (!(present >> n & 1)) continue;
-    const Index3& shift = neighbours[n].shift;
-    for (const std::size_t i : neighbours[n].solids) add(i, {shift[0] * size.x, shift[1] * size.y, shift[2] * size.z});
+    solids.push_back(cell.solids[solid].Moved(TopLoc_Location(move)));
+    if (!cell.primitives.empty()) primitives.push_back(translated(cell.primitives[solid], by));
   }
   if (solids.empty()) return TopoDS_Shape();
   const char* fault = nullptr;

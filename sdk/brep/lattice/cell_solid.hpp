@@ -26,16 +26,28 @@ struct CellShape {
 
 [[nodiscard]] std::optional<CellShape> cell_shape(const LatticeCell& cell, DiagnosticSink& sink);
 
-/// The solids that cell + `shift` sends into this one's box and that are not already covered there.
-struct Neighbour {
-  Index3 shift{};
-  std::vector<std::size_t> solids;
-};
-[[nodiscard]] std::vector<Neighbour> reaching_neighbours(const CellShape& cell);
+/// Which solids of which cells shape the inside of one box.
+struct Reach {
+  struct Part {
+    std::size_t solid = 0;  ///< of cell + shift
+    Index3 shift{};
+  };
+  struct Neighbour {
+    Index3 shift{};
+    std::vector<std::uint32_t> parts;  ///< what it adds to the cell's own
+  };
+  std::vector<Part> parts;  ///< no two alike
+  std::vector<std::uint32_t> own;
+  std::vector<Neighbour> neighbours;  ///< only those that add something
 
-/// The cell's own solids and those of the neighbours whose bit is set in `present`, inside the box; null if nothing is.
-/// Empty, with a diagnostic, if a boolean fails or its volume contradicts an independent one.
-[[nodiscard]] std::optional<TopoDS_Shape> solid_in_box(const CellShape& cell, const std::vector<Neighbour>& neighbours,
-                                                       std::uint64_t present, DiagnosticSink& sink);
+  /// Sorted; bit n of `present` says whether neighbour n exists.
+  [[nodiscard]] std::vector<std::uint32_t> parts_with(std::uint64_t present) const;
+};
+[[nodiscard]] Reach reach_of(const CellShape& cell);
+
+/// The given parts, fused and cut to the box; null if there is nothing. Empty, with a diagnostic, if a boolean fails or
+/// its volume contradicts an independent one.
+[[nodiscard]] std::optional<TopoDS_Shape> solid_in_box(const CellShape& cell, const Reach& reach,
+                                                       const std::vector<std::uint32_t>& parts, DiagnosticSink& sink);
 
 }  // namespace meso::brep

@@ -26,6 +26,13 @@ double distance_to(const Frustum& frustum, Vec3 p) {
   return inside ? -nearest : nearest;
 }
 
+/// From the centre of a box to that of one of its eight halves.
+Vec3 octant(Vec3 half, int corner) {
+  const Vec3 quarter = half / 2;
+  return {corner & 1 ? quarter.x : -quarter.x, corner & 2 ? quarter.y : -quarter.y,
+          corner & 4 ? quarter.z : -quarter.z};
+}
+
 struct CoverSearch {
   const CellPrimitive& primitive;
   std::span<const CellPrimitive> others;
@@ -41,29 +48,20 @@ struct CoverSearch {
     if (other <= -reach) return true;
     if (own < -smallest && other > smallest) return false;
     if (reach < smallest) return true;
-    const Vec3 quarter = half / 2;
-    for (int corner = 0; corner < 8; ++corner) {
-      const Vec3 shift{corner & 1 ? quarter.x : -quarter.x, corner & 2 ? quarter.y : -quarter.y,
-                       corner & 4 ? quarter.z : -quarter.z};
-      if (!covered_in(centre + shift, quarter)) return false;
-    }
+    for (int corner = 0; corner < 8; ++corner)
+      if (!covered_in(centre + octant(half, corner), half / 2)) return false;
     return true;
   }
 };
 
-/// The common case, decided without a search that would follow two equal surfaces everywhere.
-bool within(const CellPrimitive& inner, const CellPrimitive& outer, double tolerance) {
-  if (const auto* ball = std::get_if<Ball>(&inner))
-    return signed_distance(outer, ball->centre) <= tolerance - ball->radius;
-  const auto* a = std::get_if<Frustum>(&inner);
-  const auto* b = std::get_if<Frustum>(&outer);
-  if (!b) return false;
-  const auto same = [&](Vec3 start, Vec3 end, double start_radius, double end_radius) {
-    return norm(a->start - start) <= tolerance && norm(a->end - end) <= tolerance &&
-           a->start_radius <= start_radius + tolerance && a->end_radius <= end_radius + tolerance;
-  };
-  return same(b->start, b->end, b->start_radius, b->end_radius) ||
-         same(b->end, b->start, b->end_radius, b->start_radius);
+/// Halves the box until it is on one side of the surface, or `depth` times; then its centre speaks for all of it.
+double filled(std::span<const CellPrimitive> primitives, Vec3 centre, Vec3 half, int depth) {
+  const double distance = signed_distance(primitives, centre);
+  if (depth == 0 || std::fabs(distance) >= norm(half)) return distance < 0 ? 8 * half.x * half.y * half.z : 0;
+  double sum = 0;
+  for (int corner = 0; corner < 8; ++corner)
+    sum += filled(primitives, centre + octant(half, corner), half / 2, depth - 1);
+  return sum;
 }
 
 }  // namespace
@@ -111,11 +109,28 @@ CellPrimitive translated(const CellPrimitive& primitive, Vec3 by) {
   return moved;
 }
 
+bool same(const CellPrimitive& a, const CellPrimitive& b, double tolerance) {
+  if (a.index() != b.index()) return false;
+  if (const auto* ball = std::get_if<Ball>(&a)) {
+    const auto& other = std::get<Ball>(b);
+    return norm(ball->centre - other.centre) <= tolerance && std::fabs(ball->radius - other.radius) <= tolerance;
+  }
+  const auto& strut = std::get<Frustum>(a);
+  const auto runs = [&](Vec3 start, Vec3 end, double start_radius, double end_radius) {
+    return norm(strut.start - start) <= tolerance && norm(strut.end - end) <= tolerance &&
+           std::fabs(strut.start_radius - start_radius) <= tolerance &&
+           std::fabs(strut.end_radius - end_radius) <= tolerance;
+  };
+  const auto& other = std::get<Frustum>(b);
+  return runs(other.start, other.end, other.start_radius, other.end_radius) ||
+         runs(other.end, other.start, other.end_radius, other.start_radius);
+}
+
 bool covered(const CellPrimitive& primitive, std::span<const CellPrimitive> others, const Box3& box) {
   const Vec3 size = box.max - box.min;
-  const double tolerance = 1e-9 * norm(size);
+  // Decided without a search that would follow two equal surfaces everywhere.
   for (const CellPrimitive& other : others)
-    if (within(primitive, other, tolerance)) return true;
+    if (same(primitive, other, 1e-9 * norm(size))) return true;
   Box3 part = bounds(primitive);  // the search need not look beyond it
   if (!part.intersects(box)) return true;
   for (std::size_t i = 0; i < 3; ++i) {
@@ -127,18 +142,7 @@ bool covered(const CellPrimitive& primitive, std::span<const CellPrimitive> othe
 }
 
 double sampled_volume(std::span<const CellPrimitive> primitives, const Box3& box) {
-  constexpr int count = 48;
-  const Vec3 step = (box.max - box.min) / count;
-  const double width = norm(step) / std::sqrt(3.0);
-  double filled = 0;
-  for (int i = 0; i < count; ++i)
-    for (int j = 0; j < count; ++j)
-      for (int k = 0; k < count; ++k) {
-        const Vec3 p = box.min + Vec3{(i + 0.5) * step.x, (j + 0.5) * step.y, (k + 0.5) * step.z};
-        // A voxel that the surface crosses counts by its distance, not as all or nothing.
-        filled += std::clamp(0.5 - signed_distance(primitives, p) / width, 0.0, 1.0);
-      }
-  return filled * step.x * step.y * step.z;
+  return filled(primitives, 0.5 * (box.min + box.max), 0.5 * (box.max - box.min), 7);
 }
 
 }  // namespace meso::brep

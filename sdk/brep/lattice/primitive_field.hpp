@@ -17,11 +17,14 @@ namespace meso::brep {
 [[nodiscard]] Box3 bounds(const CellPrimitive& primitive);
 [[nodiscard]] CellPrimitive translated(const CellPrimitive& primitive, Vec3 by);
 
+/// The same body, whichever end of a strut is named first.
+[[nodiscard]] bool same(const CellPrimitive& a, const CellPrimitive& b, double tolerance);
+
 /// Whether `primitive`, where it is inside `box`, adds nothing to the union of `others`. Proven by subdivision; what
 /// protrudes by less than 1e-4 of the box is not seen, and a proof that grows too long answers no.
 [[nodiscard]] bool covered(const CellPrimitive& primitive, std::span<const CellPrimitive> others, const Box3& box);
 
-/// Volume of the union inside the box by sampling, good to about one part in a thousand.
+/// Volume of the union inside the box by sampling, good to a few parts in a thousand.
 [[nodiscard]] double sampled_volume(std::span<const CellPrimitive> primitives, const Box3& box);
 
 }  // namespace meso::brep

@@ -29,9 +29,8 @@ struct EdgeUse {
   bool reversed = false;
 };
 
-/// What one box holds, by which of the neighbours that matter exist.
+/// What one box holds, by which solids reach into it.
 struct CellKind {
-  std::uint64_t present = 0;
   std::vector<CellFace> faces;
   std::vector<TopoDS_Face> shapes;           ///< parallel to faces
   std::vector<std::uint32_t> cluster_lumps;  ///< the connected solid each cluster bounds
@@ -57,8 +56,7 @@ struct NaturalFace {
 
 struct Quotient {
   std::shared_ptr<Template> geometry = std::make_shared<Template>();
-  std::vector<Neighbour> neighbours;
-  std::vector<CellKind> kinds;             ///< kind 0 has every neighbour
+  std::vector<CellKind> kinds;             ///< kind 0: every solid that can reach in does
   std::vector<std::vector<EdgeUse>> uses;  ///< per edge of the template
   std::vector<std::vector<Vec3>> samples;  ///< per edge: points along it, ends left out
   std::vector<NaturalFace> naturals;

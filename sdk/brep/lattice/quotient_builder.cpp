@@ -32,7 +32,7 @@ class Builder {
         matcher_(geometry_, quotient.samples, cell.box.min, cell.tolerance()) {}
 
   /// Matches the edges; false if the solid is not closed in itself.
-  bool add_kind(const TopoDS_Shape& solid, std::uint64_t present);
+  bool add_kind(const TopoDS_Shape& solid);
   void add_meshes(const MeshFineness& fineness);
   void add_faces();
 
@@ -80,9 +80,8 @@ bool Builder::on_boundary(const TopoDS_Edge& edge) const {
   return false;
 }
 
-bool Builder::add_kind(const TopoDS_Shape& solid, std::uint64_t present) {
+bool Builder::add_kind(const TopoDS_Shape& solid) {
   CellKind& kind = quotient_.kinds.emplace_back();
-  kind.present = present;
   Source& source = sources_.emplace_back();
   source.shell = all_faces(solid);
   for (TopExp_Explorer lump(solid, TopAbs_SOLID); lump.More(); lump.Next(), ++kind.lumps)
@@ -227,26 +226,25 @@ bool walls_overlap(const CellKind& low, const CellKind& high, int axis, Vec3 siz
   return false;
 }
 
-std::optional<Quotient> build_quotient(const CellShape& cell, std::vector<Neighbour> neighbours,
-                                       const std::vector<std::uint64_t>& present, const LatticeOptions& options,
-                                       DiagnosticSink& sink) {
+std::optional<Quotient> build_quotient(const CellShape& cell, const Reach& reach,
+                                       const std::vector<std::vector<std::uint32_t>>& kinds,
+                                       const LatticeOptions& options, DiagnosticSink& sink) {
   const Vec3 size = cell.size();
   Quotient quotient;
-  quotient.neighbours = std::move(neighbours);
   quotient.tolerance = cell.tolerance();
   quotient.geometry->lattice = Mat3::from_columns({size.x, 0, 0}, {0, size.y, 0}, {0, 0, size.z});
   std::string fault;
   try {
     Builder builder(cell, quotient);
     std::vector<TopoDS_Shape> solids;
-    for (const std::uint64_t mask : present) {
-      const std::optional<TopoDS_Shape> solid = solid_in_box(cell, quotient.neighbours, mask, sink);
+    for (const std::vector<std::uint32_t>& parts : kinds) {
+      const std::optional<TopoDS_Shape> solid = solid_in_box(cell, reach, parts, sink);
       if (!solid) return {};
       solids.push_back(*solid);
     }
     if (!divide_alike(solids, cell)) fault = "the walls of the unit cell cannot be divided alike";
-    for (std::size_t k = 0; k < solids.size(); ++k)
-      if (!builder.add_kind(solids[k], present[k])) fault = "a face of the unit cell bounds no solid";
+    for (const TopoDS_Shape& solid : solids)
+      if (!builder.add_kind(solid)) fault = "a face of the unit cell bounds no solid";
     if (options.mesh) builder.add_meshes(*options.mesh);
     builder.add_faces();
     if (!builder.closed) fault = "the unit cell is not a manifold inside its box";

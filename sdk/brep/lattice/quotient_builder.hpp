@@ -8,10 +8,10 @@
 
 namespace meso::brep {
 
-/// `present` lists the kinds wanted, the one with every neighbour first. Empty, with GEOMETRY_NOT_REPEATABLE, if a
-/// solid cannot be made or does not close upon itself.
-[[nodiscard]] std::optional<Quotient> build_quotient(const CellShape& cell, std::vector<Neighbour> neighbours,
-                                                     const std::vector<std::uint64_t>& present,
+/// `kinds` lists the parts of each kind of box, the one with all parts first. Empty, with GEOMETRY_NOT_REPEATABLE, if a
+/// solid cannot be made or is not a manifold.
+[[nodiscard]] std::optional<Quotient> build_quotient(const CellShape& cell, const Reach& reach,
+                                                     const std::vector<std::vector<std::uint32_t>>& kinds,
                                                      const LatticeOptions& options, DiagnosticSink& sink);
 
 }  // namespace meso::brep
