@@ -51,7 +51,9 @@ class ShapeMaker {
     return shapes;
   }
 
-  Vec3 point(const Expr& x, const Expr& y, const Expr& z) {
+  // A template, so that an Expression is not copied into an optional: the table knows expressions by their address.
+  template <class E>
+  Vec3 point(const E& x, const E& y, const E& z) {
     return {read_.length(x), read_.length(y), read_.length(z)};
   }
   void need_volume(bool good, const Element& e, std::string why) {

@@ -2,6 +2,7 @@
 #pragma once
 // Bodies of cells and macrostructures: every expression bound once, then shapes from slots as often as needed.
 
+#include <cassert>
 #include <functional>
 #include <unordered_map>
 #include <vector>
@@ -20,12 +21,16 @@ class BodyTable {
   [[nodiscard]] static std::optional<BodyTable> make(const EvaluationData& data, const UnitCell& cell,
                                                      const Scope& scope, const Report& report);
 
-  [[nodiscard]] const BoundExpression& at(const Expression& e) const { return bound_.find(&e)->second.front(); }
-  [[nodiscard]] const std::vector<BoundExpression>& at(const ExpressionList& e) const {
-    return bound_.find(&e)->second;
-  }
+  [[nodiscard]] const BoundExpression& at(const Expression& e) const { return find(&e).front(); }
+  [[nodiscard]] const std::vector<BoundExpression>& at(const ExpressionList& e) const { return find(&e); }
 
  private:
+  [[nodiscard]] const std::vector<BoundExpression>& find(const void* address) const {
+    const auto found = bound_.find(address);
+    assert(found != bound_.end());
+    return found->second;
+  }
+
   std::unordered_map<const void*, std::vector<BoundExpression>> bound_;
 };
 

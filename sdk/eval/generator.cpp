@@ -103,7 +103,6 @@ class GeneratorCompiler {
     program.cumulative = program.spacing && program.spacing->names(loop.index.text);
     program.stepped = program.spacing || program.position;
     if (program.direction) direction_level_ = level();
-    if (program.axis) define_axis(*program.axis);
     program_.loops.push_back(std::move(program));
     return true;
   }
@@ -137,7 +136,6 @@ class GeneratorCompiler {
     program.initial.spacing = *step;
     program.stepped = true;
     if (range.index) scope_.define(range.index->text, program.index_slot, level());
-    define_axis(*program.axis);
     program_.loops.push_back(std::move(program));
     return true;
   }

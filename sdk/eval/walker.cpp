@@ -11,7 +11,8 @@
 namespace meso::eval {
 namespace {
 
-constexpr std::uint64_t poll_mask = 0xFFF;   // ask for cancellation every 4096 cells: well below a millisecond of work
+constexpr std::uint64_t poll_mask = 0xFFF;  // ask for cancellation every 4096 cells: well below a millisecond of work
+constexpr std::uint64_t compile_threshold = 1024;
 constexpr double distance_tolerance = 1e-9;
 
 }  // namespace
@@ -40,6 +41,7 @@ Report Walker::report(std::size_t known_indices) const {
 bool Walker::visit(std::uint64_t first, std::uint64_t last, const CellStream::Visitor& visitor) {
   ended_ = false;
   if (first >= last) return true;
+  if (last - first > compile_threshold && programs_.empty()) compile();
   if (!seek(first)) return false;
   const RunOptions& run = program_.evaluation->run;
   for (std::uint64_t ordinal = first;;) {
@@ -108,6 +110,25 @@ bool Walker::place() {
   return true;
 }
 
+// Compiling takes as long as some hundred walks; the values are equal bit for bit.
+void Walker::compile() {
+  programs_.resize(program_.statements.size());
+  for (std::size_t i = 0; i < programs_.size(); ++i) {
+    const Statement& statement = program_.statements[i];
+    const auto* assign = std::get_if<Assign>(&statement.action);
+    if (assign != nullptr && statement.level != constant_level) programs_[i].emplace(assign->expression.expression);
+  }
+}
+
+bool Walker::assign(const Assign& assign, std::size_t position) {
+  double& target = slots_[assign.slot];
+  if (programs_.empty() || !programs_[position]) return evaluate(assign.expression, target, loops());
+  const expr::EvalResult result = programs_[position]->evaluate(slots_);
+  target = result.value;
+  // The walk fails in the same place, and says where.
+  return result || evaluate(assign.expression, target, loops());
+}
+
 bool Walker::run(const Statement& statement, std::size_t position) {
   const bool current = statement.level < changed_;
   if (statement.moves()) {
@@ -122,8 +143,7 @@ bool Walker::run(const Statement& statement, std::size_t position) {
     return true;
   }
   if (current) return true;
-  if (const auto* assign = std::get_if<Assign>(&statement.action))
-    return evaluate(assign->expression, slots_[assign->slot], loops());
+  if (const auto* value = std::get_if<Assign>(&statement.action)) return assign(*value, position);
   const auto& bound = std::get<Bound>(statement.action);
   const double value = slots_[bound.value], limit = slots_[bound.bound];
   if (bound.upper ? value <= limit : value >= limit) return true;

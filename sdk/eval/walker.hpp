@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "expression_program.hpp"
 #include "meso/eval/evaluation.hpp"
 #include "pattern_program.hpp"
 
@@ -42,6 +43,8 @@ class Walker {
   [[nodiscard]] std::optional<std::uint64_t> count_from(std::size_t loop, std::uint64_t limit);
 
   // The cell where the loops stand.
+  void compile();
+  [[nodiscard]] bool assign(const Assign& assign, std::size_t position);
   struct Motion {
     Affine map;
     bool drops = false;
@@ -59,8 +62,9 @@ class Walker {
   std::vector<double> slots_;
   std::vector<LoopState> state_;
   std::vector<std::int64_t> index_;
-  std::vector<Motion> motions_;   ///< per statement; of those that move the frame
-  int changed_ = constant_level;  ///< outermost level that moved since the last placed cell
+  std::vector<std::optional<ExpressionProgram>> programs_;  ///< per statement, once many cells are asked for
+  std::vector<Motion> motions_;                             ///< per statement; of those that move the frame
+  int changed_ = constant_level;                            ///< outermost level that moved since the last placed cell
   bool dropped_ = false;
   bool ended_ = false;
   Mat3 turn_, local_;
