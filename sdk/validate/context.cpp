@@ -26,6 +26,9 @@ std::string_view to_text(Kind kind) {
 }
 
 std::string Context::suggestion(std::string_view word, std::span<const std::string_view> candidates) const {
+  // Comparing words is not cheap, and there may be as many wrong ones as the sink takes.
+  constexpr std::size_t most_candidates = 2000;
+  if (candidates.size() > most_candidates) return {};
   const std::string_view best = expr::nearest(word, candidates);
   return best.empty() ? std::string() : "; did you mean '" + std::string(best) + "'?";
 }
