@@ -17,6 +17,11 @@ using Clock = std::chrono::steady_clock;
 
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
+std::optional<MeshFineness> fineness(const RealiseOptions& options) {
+  if (!options.mesh) return {};
+  return MeshFineness{options.deflection_mm, options.angle_rad};
+}
+
 /// A body while the fold goes on: solids, or, after the last step, the repeated template of a lattice.
 struct Folded {
   Solids solids;
@@ -44,7 +49,7 @@ class PartFold {
   }
 
   CellCounts counts;
-  std::string path = "direct";
+  std::string way = "direct";
 
  private:
   bool step(Folded& state, const Part& part, const Apply& apply, bool may_be_lattice) {
@@ -68,7 +73,7 @@ class PartFold {
     }
     if (!made) return false;
     state.solids = std::move(made->solids);
-    path = made->used_booleans ? "boolean" : "cells";
+    way = made->used_booleans ? "boolean" : "cells";
     return settle_fragments(state.solids, solids_before, context, part.id.text, counts);
   }
 
@@ -77,13 +82,13 @@ class PartFold {
                        apply.boundary.value_or(BoundaryRule::clip) == BoundaryRule::clip &&
                        apply.fragments.value_or(FragmentRule::keep) == FragmentRule::keep;
     if (!clips || cells.size() > options_.run.max_cells) return false;
-    auto lattice = lattice_part(state.solids, cells, options_.mesh, context_);
+    auto lattice = lattice_part(state.solids, cells, fineness(options_), context_);
     if (!lattice) return false;
     counts.placed += cells.size();
     counts.kept += lattice->kept;
     counts.fragments += lattice->body.fragments;
     state.body = std::move(lattice->body);
-    path = "lattice";
+    way = "lattice";
     return true;
   }
 
@@ -122,9 +127,9 @@ void mesh_once(const Solids& solids, const MeshFineness& mesh) {
 
 std::optional<Body> to_body(const Solids& solids, const RealiseOptions& options, DiagnosticSink& sink) {
   ShapeToBodyOptions to_body_options;
-  if (options.mesh) {
-    mesh_once(solids, *options.mesh);
-    to_body_options.mesh = MeshTolerance{options.mesh->deflection, options.mesh->angle};
+  if (const auto mesh = fineness(options)) {
+    mesh_once(solids, *mesh);
+    to_body_options.mesh = MeshTolerance{mesh->deflection, mesh->angle};
   }
   TopoDS_Compound compound;
   const BRep_Builder builder;
@@ -147,7 +152,7 @@ void append(Realisation& to, Realisation from) {
   to.cells.kept += from.cells.kept;
   to.cells.crossing += from.cells.crossing;
   to.cells.fragments += from.cells.fragments;
-  to.path = std::move(from.path);
+  to.way = std::move(from.way);
   to.evaluate_seconds += from.evaluate_seconds;
   to.realise_seconds += from.realise_seconds;
 }
@@ -166,7 +171,7 @@ std::optional<Realisation> realise(const eval::Evaluation& evaluation, const Par
       context.report(Code::geometry_empty, part.id_in_source, {part.id.text});
       return {};
     }
-    Realisation result{{}, fold.counts, std::move(fold.path)};
+    Realisation result{{}, fold.counts, std::move(fold.way)};
     auto body = folded->body ? std::move(folded->body) : to_body(folded->solids, options, sink);
     if (!body) return {};
     result.body = std::move(*body);
@@ -175,6 +180,21 @@ std::optional<Realisation> realise(const eval::Evaluation& evaluation, const Par
     return result;
   } catch (const Standard_Failure& failure) {
     context.report(Code::geometry_kernel, part.id_in_source, {"realising a part", failure.GetMessageString()});
+    return {};
+  }
+}
+
+std::optional<Body> realise_macrostructure(const eval::Evaluation& evaluation, const Macrostructure& macrostructure,
+                                           const RealiseOptions& options, DiagnosticSink& sink) {
+  const SolidContext context{evaluation.checked().source(), options.run, sink};
+  const auto shape = evaluation.shape(macrostructure, sink);
+  const auto solids = shape ? solid_from_shape(*shape, {}, context) : std::nullopt;
+  if (!solids) return {};
+  try {
+    return to_body(*solids, options, sink);
+  } catch (const Standard_Failure& failure) {
+    context.report(Code::geometry_kernel, macrostructure.id_in_source,
+                   {"realising a macrostructure", failure.GetMessageString()});
     return {};
   }
 }

@@ -5,7 +5,8 @@
 
 #include <optional>
 
-#include "meso/brep/realise.hpp"
+#include "meso/brep/lattice_body.hpp"
+#include "meso/eval/evaluation.hpp"
 #include "solid_context.hpp"
 
 namespace meso::brep {

@@ -56,9 +56,9 @@ std::string balls(int count, double start, double spacing = 4) {
 const std::string block = macrostructure(R"(<box x="0" y="-5" z="-5" dx="20" dy="10" dz="10"/>)");
 constexpr double ball = 4.0 / 3 * pi;
 
-void expect_body(const std::optional<Realisation>& made, const std::string& path, double volume) {
+void expect_body(const std::optional<Realisation>& made, const std::string& way, double volume) {
   ASSERT_TRUE(made);
-  EXPECT_EQ(made->path, path);
+  EXPECT_EQ(made->way, way);
   EXPECT_NEAR(measure(made->body).volume / volume, 1, 1e-6);
   EXPECT_TRUE(audit(made->body).clean());
 }

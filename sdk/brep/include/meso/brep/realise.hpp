@@ -22,13 +22,14 @@
 #include <string_view>
 
 #include "meso/brep/body.hpp"
-#include "meso/brep/lattice_body.hpp"
 #include "meso/eval/evaluation.hpp"
 
 namespace meso::brep {
 
 struct RealiseOptions {
-  std::optional<MeshFineness> mesh{};  ///< triangulate, too
+  bool mesh = false;           ///< triangulate, too
+  double deflection_mm = 0.1;  ///< largest distance of the triangles from the exact surface
+  double angle_rad = 0.5;      ///< largest turn along one segment
   RunOptions run{};
   std::size_t max_boolean_solids = 600;  ///< that general booleans may have to join in one step
 };
@@ -43,12 +44,17 @@ struct CellCounts {
 struct Realisation {
   Body body;
   CellCounts cells;
-  std::string path;  ///< "direct", "lattice", "cells" or "boolean"; the last that was needed
+  std::string way;  ///< "direct", "lattice", "cells" or "boolean"; the last that was needed
   double evaluate_seconds = 0, realise_seconds = 0;
 };
 
 [[nodiscard]] std::optional<Realisation> realise(const eval::Evaluation& evaluation, const Part& part,
                                                  const RealiseOptions& options, DiagnosticSink& sink);
+
+/// A macrostructure alone, in the world.
+[[nodiscard]] std::optional<Body> realise_macrostructure(const eval::Evaluation& evaluation,
+                                                         const Macrostructure& macrostructure,
+                                                         const RealiseOptions& options, DiagnosticSink& sink);
 
 /// What `build` lists, each item placed; with `part_id` that part alone; without a build the only part.
 [[nodiscard]] std::optional<Realisation> realise_build(const eval::Evaluation& evaluation,
