@@ -35,6 +35,7 @@ std::string Context::suggestion(std::string_view word, std::span<const std::stri
 
 void Context::report(Code code, const Element& element, std::string_view attribute, std::vector<std::string> args,
                      std::size_t offset, std::size_t length) {
+  if (is_full()) return sink_.report({.code = code});  // only counted: finding the place costs time
   const ElementId id = element.id_in_source;
   sink_.report({.code = code,
                 .where = attribute.empty() ? source.span(id) : source.span(id, attribute, offset, length),
@@ -45,6 +46,7 @@ void Context::report(Code code, const Element& element, std::string_view attribu
 void Context::report_with_related(Code code, const Element& element, std::string_view attribute,
                                   std::vector<std::string> args, const Element& related,
                                   std::string_view related_attribute, std::string note) {
+  if (is_full()) return sink_.report({.code = code});
   const ElementId id = element.id_in_source;
   sink_.report({.code = code,
                 .where = source.span(id, attribute),
