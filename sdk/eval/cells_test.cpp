@@ -174,6 +174,9 @@ TEST(Limits, TooManyCellsAreToldAtOnce) {
   EXPECT_THAT(faults_of(pattern_text("<loop index='i' axis='x' count='1e12' spacing='1'/>"
                                      "<loop index='j' axis='y' count='i' spacing='1'/>")),
               ElementsAre("LIMIT_CELLS"));
+  EXPECT_THAT(faults_of(pattern_text("<loop index='i' axis='x' count='1e12' spacing='1'/>"
+                                     "<loop index='j' axis='y' count='0*i' spacing='1'/>")),
+              ElementsAre("LIMIT_CELLS"));
   EXPECT_THAT(faults_of(pattern_text("<loop index='i' axis='x' count='11' spacing='1'/>"), {.run = {.max_cells = 10}}),
               ElementsAre("LIMIT_CELLS"));
   EXPECT_THAT(faults_of(pattern_text("<loop index='i' axis='x' count='10' spacing='1'/>"), {.run = {.max_cells = 10}}),

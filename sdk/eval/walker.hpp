@@ -65,6 +65,7 @@ class Walker {
   std::vector<std::optional<ExpressionProgram>> programs_;  ///< per statement, once many cells are asked for
   std::vector<Motion> motions_;                             ///< per statement; of those that move the frame
   int changed_ = constant_level;                            ///< outermost level that moved since the last placed cell
+  std::uint64_t counted_ = 0;                               ///< indices that counting has stepped through
   bool dropped_ = false;
   bool ended_ = false;
   Mat3 turn_, local_;

@@ -122,6 +122,8 @@ std::optional<std::uint64_t> Walker::count_from(std::size_t loop, std::uint64_t 
   if (!begin_places(loop)) return std::nullopt;
   std::uint64_t total = 0;
   for (std::int64_t i = first; i < end && total <= limit; ++i) {
+    // Loops without cells take time too.
+    if (++counted_ > limit) return limit + 1;
     if (!move_to(loop, i)) return std::nullopt;
     const auto inner = count_from(loop + 1, limit);
     if (!inner) return std::nullopt;
@@ -132,12 +134,14 @@ std::optional<std::uint64_t> Walker::count_from(std::size_t loop, std::uint64_t 
 
 std::optional<std::uint64_t> Walker::count(std::uint64_t limit) {
   assert(limit < std::numeric_limits<std::uint64_t>::max());
+  counted_ = 0;
   return count_from(0, limit);
 }
 
 bool Walker::seek(std::uint64_t ordinal) {
   constexpr std::uint64_t no_limit = std::numeric_limits<std::uint64_t>::max() - 1;
   changed_ = std::min(changed_, 0);
+  counted_ = 0;
   for (std::size_t k = 0; k < loops(); ++k) {
     if (!begin_count(k) || !begin_places(k)) return false;
     std::int64_t index = program_.loops[k].first;
