@@ -230,6 +230,7 @@ class Join {
     if (found.empty()) return {};
     std::stable_sort(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
     std::vector<std::vector<Coedge>> loops;
+    loops.reserve(found.size());
     for (auto& [area, loop] : found) loops.push_back(std::move(loop));
     return loops;
   }

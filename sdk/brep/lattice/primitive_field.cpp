@@ -6,6 +6,10 @@
 namespace meso::brep {
 namespace {
 
+double length_of(double a, double b) {
+  return std::sqrt(a * a + b * b);
+}  // std::hypot minds overflow, at ten times the cost
+
 double distance_to(const Ball& ball, Vec3 p) { return norm(p - ball.centre) - ball.radius; }
 
 /// In the half plane (t along the axis, r from it) the frustum is a trapezium: distance to its two ends and its flank.
@@ -18,9 +22,9 @@ double distance_to(const Frustum& frustum, Vec3 p) {
   const double s =
       std::clamp((t * length + (r - frustum.start_radius) * slope) / (length * length + slope * slope), 0.0,
                  1.0);  // foot of the perpendicular on the flank
-  const double flank = std::hypot(t - s * length, r - frustum.start_radius - s * slope);
-  const double to_start = std::hypot(t, std::max(0.0, r - frustum.start_radius));
-  const double to_end = std::hypot(t - length, std::max(0.0, r - frustum.end_radius));
+  const double flank = length_of(t - s * length, r - frustum.start_radius - s * slope);
+  const double to_start = length_of(t, std::max(0.0, r - frustum.start_radius));
+  const double to_end = length_of(t - length, std::max(0.0, r - frustum.end_radius));
   const double nearest = std::min({flank, to_start, to_end});
   const bool inside = t > 0 && t < length && r < frustum.start_radius + slope * t / length;
   return inside ? -nearest : nearest;
