@@ -76,6 +76,8 @@ def compare_cells(expected, answer, columns):
 
 
 def compare_measures(expected, answer):
+    if answer.get("errors") and "volume" not in answer:
+        raise Mismatch(f"measure: not realised: {answer['errors']}")
     for what in ("volume", "area"):
         if what in expected and not is_close(expected[what], answer.get(what, math.nan), expected.get("tolerance", 1e-6)):
             raise Mismatch(f"{what}: expected {expected[what]}, found {answer.get(what)}")

@@ -7,6 +7,7 @@ usage: meso.py --meso PATH TASK FILE --out JSON [--pattern ID] [--set=ID=EXPR] [
 import argparse
 import json
 import pathlib
+import re
 import subprocess
 import sys
 
@@ -28,6 +29,12 @@ def errors_of(report):
             for d in report.get("diagnostics", []) if d["severity"] == "error"]
 
 
+def told_errors(text):
+    """The errors among the lines of standard error: FILE:LINE:COLUMN: error CODE: message."""
+    found = re.findall(r"^.*?:(\d+):(\d+): error ([A-Z0-9_]+): ", text, re.MULTILINE)
+    return [{"rule": rules().get(code), "line": int(line), "column": int(column), "code": code} for line, column, code in found]
+
+
 def validate(meso, a):
     report = json.loads(call([meso, "validate", a.file, "--json"]).stdout)
     return {"verdict": report["verdict"], "errors": errors_of(report)}
@@ -42,11 +49,14 @@ def cells(meso, a):
     done = call([meso, "eval", a.file, str(target), "--pattern", a.pattern, "--json", *[f"--set={s}" for s in a.set or []]])
     if done.returncode == 0:
         return json.loads(target.read_text(encoding="utf-8"))
-    return {"errors": errors_of(json.loads(done.stdout))}
+    return {"errors": told_errors(done.stderr)}
 
 
 def measure(meso, a):
-    report = json.loads(call([meso, "verify", a.file, "--part", a.part, "--json"]).stdout)
+    done = call([meso, "verify", a.file, "--part", a.part, "--json"])
+    if not done.stdout:
+        return {"errors": told_errors(done.stderr)}
+    report = json.loads(done.stdout)
     answer = {k: report[k] for k in ("volume", "area", "solids") if k in report}
     answer["samples"] = [c["found"] == "inside" for c in report.get("checks", []) if c["what"].startswith("sample")]
     answer["errors"] = errors_of(report)

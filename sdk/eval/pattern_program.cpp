@@ -171,8 +171,9 @@ class StatementCompiler {
       if (!slot) return false;
       second_slot = *slot;
     }
-    // Global components are seen from the frame of the moment.
-    if (o->frame.value_or(VectorFrame::cell) == VectorFrame::global) level = std::max(level, frame_level_);
+    // Global components are seen from the frame of the moment, which turns with circular coordinates too.
+    if (o->frame.value_or(VectorFrame::cell) == VectorFrame::global)
+      level = std::max({level, frame_level_, program_.turn_level});
     add_move(level, Orient{o, *vector_slot, second_slot});
     if (o->zero.value_or(ZeroVectorRule::error) == ZeroVectorRule::drop) drop_from(level);
     return true;

@@ -11,7 +11,7 @@ using NodeTable = std::map<std::string_view, const BeamNode*>;
 NodeTable collect_nodes(Context& c, const BeamsBody& body) {
   NodeTable nodes;
   for (const BeamNode& node : body.nodes) {
-    c.require_positive(node, "radius", node.radius);
+    c.require_not_negative(node, "radius", node.radius);
     const auto [entry, is_new] = nodes.emplace(node.name.text, &node);
     if (is_new)
       (void)c.check_name(node, "id", node.name.text);
@@ -63,7 +63,8 @@ void check_beam(Context& c, const BeamsBody& body, const NodeTable& nodes, const
 void check_beams(Context& c, const BeamsBody& body, const Scope& scope) {
   walk(body, ExpressionCheck{c, scope});
   c.require_positive(body, "radius", body.radius);
-  if (body.node_radius && body.node_radius->text != "auto") c.require_positive(body, "nodeRadius", body.node_radius);
+  if (body.node_radius && body.node_radius->text != "auto")
+    c.require_not_negative(body, "nodeRadius", body.node_radius);
   if (body.beams.empty()) c.report(Code::content_needed, body, "", {"beams", "at least one <beam>", "none"});
   const NodeTable nodes = collect_nodes(c, body);
   for (const Beam& beam : body.beams) check_beam(c, body, nodes, beam);
