@@ -93,9 +93,13 @@ class Layout {
 /// Goes over every edge on a box plane once, joins what meets there, and takes apart sheets that only touch.
 class Stitcher {
  public:
-  explicit Stitcher(Layout& layout) : layout_(layout), nodes(std::size_t{layout.cells().count()} * layout.clusters()) {}
+  explicit Stitcher(Layout& layout)
+      : layout_(layout), nodes_(std::size_t{layout.cells().count()} * layout.clusters()) {}
 
-  bool stitch() {
+  /// The shells: which clusters of faces hang together.
+  [[nodiscard]] UnionFind& nodes() { return nodes_; }
+
+  [[nodiscard]] bool stitch() {
     const KeptCells& cells = layout_.cells();
     for (std::uint32_t n = 0; n < cells.count(); ++n) {
       const Index3 cell = cells.cell(n);
@@ -120,9 +124,7 @@ class Stitcher {
   std::vector<Use> uses_;
   std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> edge_copies_;
   std::map<std::array<std::int64_t, 6>, std::uint32_t> face_copies_;
-
- public:
-  UnionFind nodes;
+  UnionFind nodes_;
 };
 
 bool Stitcher::stitch_edge(std::uint32_t from, std::uint32_t edge, const Index3& at) {
@@ -150,7 +152,7 @@ bool Stitcher::stitch_edge(std::uint32_t from, std::uint32_t edge, const Index3&
       first = &use;
       continue;
     }
-    nodes.join(first->node, use.node);
+    nodes_.join(first->node, use.node);
     return first->reversed != use.reversed;
   }
   return false;
@@ -174,7 +176,7 @@ bool Stitcher::stitch_sheets(std::uint32_t edge, const Index3& at) {
   std::uint32_t number = 0;
   for (const auto& [cell, sheet] : sheets) {
     if (sheet.size() != 2 || sheet[0].reversed == sheet[1].reversed) return false;
-    nodes.join(sheet[0].node, sheet[1].node);
+    nodes_.join(sheet[0].node, sheet[1].node);
     if (number > 0) copy_edge(edge, at, sheet, number);
     ++number;
   }
@@ -317,7 +319,7 @@ std::optional<Body> assemble(Quotient quotient, KeptCells cells, CellKinds kinds
   for (std::uint32_t n = 0; n < layout->cells().count(); ++n)
     expected += layout->quotient().kinds[layout->kind(layout->cells().cell(n))].volume;
   UnionFind solids = join_lumps(*layout, lumps);
-  const std::vector<ShellNodes> shells = collect_shells(*layout, stitcher.nodes, solids, lumps);
+  const std::vector<ShellNodes> shells = collect_shells(*layout, stitcher.nodes(), solids, lumps);
 
   Body body;
   std::map<std::uint32_t, std::vector<Shell>> voids;

@@ -157,6 +157,23 @@ TEST(Lattice, CellsThatReachFarIntoTheirNeighbours) {
   EXPECT_NEAR(r.measures.volume / truth, 1, 1e-6);
 }
 
+TEST(Lattice, ConesJoinAcrossFourCells) {
+  // Lines along z on the box edges, waisted in the middle.
+  LatticeCell cell{.box = {{0, 0, 0}, {5, 5, 6}}, .primitives = {}};
+  for (int i = 0; i < 4; ++i) {
+    const Vec3 foot{i & 1 ? 5.0 : 0, i & 2 ? 5.0 : 0, 0};
+    cell.primitives.push_back(Frustum{foot, foot + Vec3{0, 0, 3}, 1, 0.5});
+    cell.primitives.push_back(Frustum{foot + Vec3{0, 0, 3}, foot + Vec3{0, 0, 6}, 0.5, 1});
+  }
+  const Result r = realise(cell, block(4, 4, 2));
+  EXPECT_NEAR(r.measures.volume / (32 * pi * 6 / 3 * (1 + 0.5 + 0.25)), 1, 1e-9);
+  EXPECT_EQ(r.measures.solids, 25u);  // lines of struts, cut ones on the rim
+  const Result whole = realise(cell, block(2, 2, 1));
+  // The inner line: two whole cones. Four half and four quarter lines: quarter cones. Quarter discs at all ends, flat
+  // walls on the rim.
+  EXPECT_EQ(whole.audit.faces, (2u + 8) + 4 * (4 + 4 + 2) + 4 * (2 + 2 + 2));
+}
+
 TEST(Lattice, StrutsWithoutBallsStickOutOfTheirBoxes) {
   LatticeCell cell = bcc({5, 5, 5}, 0.5, 0.1);
   std::erase_if(cell.primitives, [](const CellPrimitive& p) { return std::holds_alternative<Ball>(p); });

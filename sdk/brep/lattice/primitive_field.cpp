@@ -6,9 +6,8 @@
 namespace meso::brep {
 namespace {
 
-double length_of(double a, double b) {
-  return std::sqrt(a * a + b * b);
-}  // std::hypot minds overflow, at ten times the cost
+// std::hypot minds overflow, at ten times the cost.
+double length_of(double a, double b) { return std::sqrt(a * a + b * b); }
 
 double distance_to(const Ball& ball, Vec3 p) { return norm(p - ball.centre) - ball.radius; }
 

@@ -34,7 +34,8 @@ class Builder {
   /// Matches the edges; false if the solid is not closed in itself.
   bool add_kind(const TopoDS_Shape& solid);
   void add_meshes(const MeshFineness& fineness);
-  void add_faces();
+  /// False if a solid is not a manifold.
+  [[nodiscard]] bool add_faces();
 
  private:
   struct Source {
@@ -60,9 +61,6 @@ class Builder {
   std::vector<bool> boundary_;  // per edge of the template
   std::map<std::vector<std::int32_t>, std::uint32_t> wall_orbits_;
   std::optional<EdgePolygons> polygons_;  // where a mesh is wanted
-
- public:
-  bool closed = true;
 };
 
 bool Builder::on_boundary(const TopoDS_Edge& edge) const {
@@ -138,7 +136,7 @@ std::uint32_t Builder::wall_orbit(const CellFace& face, const FaceTemplate& valu
   return wall_orbits_.emplace(key, static_cast<std::uint32_t>(wall_orbits_.size())).first->second;
 }
 
-void Builder::add_faces() {
+bool Builder::add_faces() {
   for (std::size_t k = 0; k < sources_.size(); ++k) {
     const Source& source = sources_[k];
     CellKind& kind = quotient_.kinds[k];
@@ -175,8 +173,10 @@ void Builder::add_faces() {
                                               .face = f,
                                               .face_cell = {-use.offset[0], -use.offset[1], -use.offset[2]},
                                               .reversed = use.reversed});
+  bool closed = true;
   for (std::size_t k = 0; k < sources_.size(); ++k)
     closed = find_clusters(quotient_.kinds[k], sources_[k].face_lumps) && closed;
+  return closed;
 }
 
 /// Faces that share an edge inside the box stay together; a wall, where it shows, hangs on the skin beside it.
@@ -246,8 +246,7 @@ std::optional<Quotient> build_quotient(const CellShape& cell, const Reach& reach
     for (const TopoDS_Shape& solid : solids)
       if (!builder.add_kind(solid)) fault = "a face of the unit cell bounds no solid";
     if (options.mesh) builder.add_meshes(*options.mesh);
-    builder.add_faces();
-    if (!builder.closed) fault = "the unit cell is not a manifold inside its box";
+    if (!builder.add_faces()) fault = "the unit cell is not a manifold inside its box";
     if (fault.empty()) find_natural_faces(quotient);
   } catch (const Standard_Failure& failure) {
     fault = std::string("the faces of the unit cell cannot be read: ") + failure.GetMessageString();
