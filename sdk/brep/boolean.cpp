@@ -164,6 +164,12 @@ Attempt attempt(BOPAlgo_Operation kind, const Solids& objects, const Solids& too
   return {std::move(result), {}};
 }
 
+void warn_of_contacts(const Solids& solids, ElementId where, const SolidContext& context) {
+  std::size_t multiple = 0;
+  for (const TopoDS_Shape& solid : solids) multiple += edge_uses(solid).multiple;
+  if (multiple > 0) context.report(Code::geometry_non_manifold, where, {std::to_string(multiple)});
+}
+
 std::optional<Solids> checked(BOPAlgo_Operation kind, const Solids& objects, const Solids& tools, ElementId where,
                               const SolidContext& context) {
   std::string fault;
@@ -171,7 +177,10 @@ std::optional<Solids> checked(BOPAlgo_Operation kind, const Solids& objects, con
     if (context.run.should_stop()) break;
     try {
       Attempt result = attempt(kind, objects, tools, fuzzy, context.run);
-      if (result.solids) return std::move(result.solids);
+      if (result.solids) {
+        warn_of_contacts(*result.solids, where, context);
+        return std::move(result.solids);
+      }
       if (fault.empty()) fault = result.fault;
     } catch (const Standard_Failure& failure) {
       if (fault.empty()) fault = failure.GetMessageString();

@@ -39,11 +39,23 @@ Place Boundary::place(const CellSolids& cells, const CellSolid& cell) const {
   std::optional<Solids> body;
   for (const CarrierSurface& surface : surfaces_) {
     if (!surface.box().intersects(box) || proven_side(surface, mesh, clear_distance) != 0) continue;
-    if (!body) body = cells.solids_of(cell);
+    if (!body) {
+      if (reaches_both_sides(mesh)) return Place::crossing;
+      body = cells.solids_of(cell);
+    }
     for (const TopoDS_Shape& solid : *body)
       if (exact_distance(solid, surface.face()) <= clear_distance) return Place::crossing;
   }
   return solid_at(mesh.points.front()) >= 0 ? Place::inside : Place::outside;
+}
+
+bool Boundary::reaches_both_sides(const CoarseMesh& mesh) const {
+  bool inside = false, outside = false;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const auto [low, high] = std::ranges::minmax_element(mesh.points, {}, [&](Vec3 p) { return p[axis]; });
+    for (const Vec3 p : {*low, *high}) (solid_at(p) >= 0 ? inside : outside) = true;
+  }
+  return inside && outside;
 }
 
 double Boundary::distance(const Solids& body) const {

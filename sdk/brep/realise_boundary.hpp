@@ -23,6 +23,9 @@ class Boundary {
   [[nodiscard]] int solid_at(Vec3 p) const;
 
  private:
+  /// Of the body's extreme points some are inside and some are not: a quick proof that it crosses.
+  [[nodiscard]] bool reaches_both_sides(const CoarseMesh& mesh) const;
+
   Solids solids_;
   std::vector<Box3> boxes_;  ///< of the solids
   std::vector<CarrierSurface> surfaces_;

@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "import_solid.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <sstream>
+
+#include "boolean.hpp"
+
+namespace meso::brep {
+namespace {
+
+const std::filesystem::path beam = std::filesystem::path(MESO_SOURCE_DIR) / "examples/ibeam/ibeam.step";
+
+std::string text_of(const std::filesystem::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+std::string replaced(std::string text, const std::string& from, const std::string& to) {
+  const auto at = text.find(from);
+  EXPECT_NE(at, std::string::npos);
+  return text.replace(at, from.size(), to);
+}
+
+/// Two triangles for each side of a cube of edge 10 at the origin.
+std::string cube_stl(bool open = false) {
+  constexpr std::array<std::array<int, 4>, 6> sides{
+      {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}}};
+  std::ostringstream out;
+  out << "solid cube\n";
+  const auto facet = [&](int a, int b, int c) {
+    out << "facet normal 0 0 0\nouter loop\n";
+    for (const int corner : {a, b, c})
+      out << "vertex " << (corner & 1) * 10 << ' ' << (corner >> 1 & 1) * 10 << ' ' << (corner >> 2) * 10 << '\n';
+    out << "endloop\nendfacet\n";
+  };
+  for (std::size_t i = open ? 1 : 0; i < sides.size(); ++i) {
+    facet(sides[i][0], sides[i][1], sides[i][2]);
+    facet(sides[i][0], sides[i][2], sides[i][3]);
+  }
+  out << "endsolid cube\n";
+  return out.str();
+}
+
+class ImportSolids : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = std::filesystem::path(::testing::TempDir()) /
+              ("meso_import_" + std::string(::testing::UnitTest::GetInstance()->current_test_info()->name()));
+    std::filesystem::create_directories(folder_);
+  }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+
+  std::filesystem::path written(const std::string& name, const std::string& text) {
+    std::ofstream(folder_ / name, std::ios::binary) << text;
+    return folder_ / name;
+  }
+  std::optional<Solids> imported(const eval::ImportShape& import) {
+    return import_solids(import, {}, {}, {source_, run_, sink_});
+  }
+  void expect_refused(const std::filesystem::path& file, Code code) {
+    sink_ = DiagnosticSink();
+    EXPECT_FALSE(imported({.file = file}));
+    ASSERT_FALSE(sink_.diagnostics().empty());
+    EXPECT_EQ(sink_.diagnostics().front().code, code) << render(sink_.diagnostics().front());
+  }
+
+  std::filesystem::path folder_;
+  SourceMap source_;
+  RunOptions run_;
+  DiagnosticSink sink_;
+};
+
+TEST_F(ImportSolids, StepHasItsOwnUnit) {
+  const auto solids = imported({.file = beam});
+  ASSERT_TRUE(solids);
+  ASSERT_EQ(solids->size(), 1u);
+  EXPECT_NEAR(volume_of(solids->front()), 280000, 1e-3);
+}
+
+TEST_F(ImportSolids, StlIsScaledAndMoved) {
+  const auto solids = imported(
+      {.file = written("cube.stl", cube_stl()), .scale = 25.4, .transform = Affine::from_translation({1, 2, 3})});
+  ASSERT_TRUE(solids);
+  ASSERT_EQ(solids->size(), 1u);
+  EXPECT_NEAR(volume_of(solids->front()), std::pow(254, 3), 1e-3);
+  EXPECT_TRUE(BRepCheck_Analyzer(solids->front()).IsValid());
+  EXPECT_NEAR(box_of(solids->front()).min.z, 3, 1e-9);
+}
+
+TEST_F(ImportSolids, OpenSurfaces) {
+  expect_refused(written("open.stl", cube_stl(true)), Code::import_not_closed);
+  // One face less in the shell: OpenCASCADE gives an open shell without a word.
+  const std::string step = text_of(beam);
+  const auto shell = step.find("CLOSED_SHELL(''");
+  ASSERT_NE(shell, std::string::npos);
+  const auto first = step.find('#', shell), second = step.find('#', first + 1);
+  expect_refused(written("open.step", step.substr(0, first) + step.substr(second)), Code::import_not_closed);
+}
+
+TEST_F(ImportSolids, FilesThatAreNotStep) {
+  const std::string step = text_of(beam);
+  expect_refused(written("empty.step", ""), Code::import_unreadable);
+  expect_refused(written("cut.step", step.substr(0, step.size() / 2)), Code::import_unreadable);
+  expect_refused(written("garbage.stp", "not a step file"), Code::import_unreadable);
+  expect_refused(folder_ / "missing.step", Code::import_unreadable);
+  expect_refused(written("nan.step", replaced(step, "CARTESIAN_POINT('',(", "CARTESIAN_POINT('',(NAN,")),
+                 Code::import_unreadable);
+}
+
+TEST_F(ImportSolids, NumbersThatAreNone) {
+  EXPECT_TRUE(has_bad_number("#1=CARTESIAN_POINT('',(0.,nan,1.));"));
+  EXPECT_TRUE(has_bad_number("#1=CARTESIAN_POINT('',(0.,-INF,1.));"));
+  EXPECT_FALSE(has_bad_number("#1=PRODUCT('nan',(#2),'inf',INFO,NANO);"));
+}
+
+TEST_F(ImportSolids, UnknownFormat) { expect_refused(written("body.xyz", "x"), Code::import_no_reader); }
+
+TEST_F(ImportSolids, ChangedFile) {
+  EXPECT_FALSE(imported({.file = beam, .sha256 = std::string(64, '0')}));
+  ASSERT_FALSE(sink_.diagnostics().empty());
+  EXPECT_EQ(sink_.diagnostics().front().code, Code::import_changed);
+}
+
+}  // namespace
+}  // namespace meso::brep
