@@ -123,6 +123,7 @@ std::optional<std::size_t> find_axis(Context& c, const std::vector<Axis>& axes, 
   const auto found = std::find_if(axes.begin(), axes.end(), [&](const Axis& a) { return a.name == name; });
   if (found != axes.end()) return static_cast<std::size_t>(found - axes.begin());
   std::vector<std::string_view> candidates;
+  candidates.reserve(axes.size());
   for (const Axis& a : axes) candidates.push_back(a.name.text);
   c.report(Code::link_unknown_axis, element, attribute,
            {system.empty() ? std::string("the global coordinate system")
