@@ -18,7 +18,7 @@ bool within_budget(std::size_t solids, const FoldContext& context) {
   if (solids <= context.max_boolean_solids) return true;
   const double minutes = std::ceil(0.05 * std::pow(static_cast<double>(solids), 1.3) / 60);
   context.solid.report(Code::limit_booleans, where_of(context),
-                       {std::to_string(solids), format_number(minutes), std::to_string(context.max_boolean_solids)});
+                       {std::to_string(context.max_boolean_solids), format_number(minutes)});
   return false;
 }
 
@@ -99,6 +99,7 @@ class CellStep {
       else {
         ++joined_kept_;
         append(joined_, cells_.solids_of(cell));
+        if (!within_budget(joined_.size(), context_)) return false;
       }
     }
     return true;
@@ -116,7 +117,6 @@ class CellStep {
   std::optional<FoldStep> difference() {
     FoldStep step{body_, !joined_.empty()};
     if (!joined_.empty()) {
-      if (!within_budget(joined_.size(), context_)) return {};
       auto cut_body = cut(body_, joined_, where_of(context_), context_.solid);
       if (!cut_body) return {};
       step.solids = std::move(*cut_body);
@@ -138,7 +138,6 @@ class CellStep {
     FoldStep step{{}, !joined_.empty()};
     for (const std::size_t i : apart_inside_) append(step.solids, cells_.solids_of(cells_.cells[i]));
     if (joined_.empty()) return step;
-    if (!within_budget(joined_.size(), context_)) return {};
     const auto joined = fuse(joined_, where_of(context_), context_.solid);
     if (!joined) return {};
     const auto clipped = common(*joined, body_, where_of(context_), context_.solid);
@@ -157,7 +156,6 @@ class CellStep {
     Solids rest = with_body ? body_ : Solids{};
     append(rest, joined_);
     step.used_booleans = !joined_.empty();
-    if (!within_budget(joined_.size(), context_)) return {};
     const auto joined = joined_.empty() ? std::optional(rest) : fuse(rest, where_of(context_), context_.solid);
     if (!joined) return {};
     append(step.solids, *joined);
