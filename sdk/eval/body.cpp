@@ -47,6 +47,7 @@ class ShapeMaker {
   }
   std::vector<Shape> make_all(const std::vector<CsgNode>& nodes) {
     std::vector<Shape> shapes;
+    shapes.reserve(nodes.size());
     for (const CsgNode& node : nodes) shapes.push_back(make(node));
     return shapes;
   }

@@ -8,7 +8,7 @@
 
 namespace meso::eval {
 
-std::shared_ptr<const CellStream::Impl> make_cell_stream(std::shared_ptr<const EvaluationData> data,
+std::shared_ptr<const CellStream::Impl> make_cell_stream(const std::shared_ptr<const EvaluationData>& data,
                                                          const Pattern& pattern, DiagnosticSink& sink) {
   const auto program = compile_pattern(data, pattern, sink);
   if (!program) return nullptr;

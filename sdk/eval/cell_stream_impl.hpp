@@ -21,7 +21,7 @@ struct CellStream::Impl {
 };
 
 /// Nothing if something was reported; too many cells are reported here.
-[[nodiscard]] std::shared_ptr<const CellStream::Impl> make_cell_stream(std::shared_ptr<const EvaluationData> data,
-                                                                       const Pattern& pattern, DiagnosticSink& sink);
+[[nodiscard]] std::shared_ptr<const CellStream::Impl> make_cell_stream(
+    const std::shared_ptr<const EvaluationData>& data, const Pattern& pattern, DiagnosticSink& sink);
 
 }  // namespace meso::eval

@@ -8,6 +8,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "meso/base/diagnostic.hpp"
@@ -30,7 +31,9 @@ struct Report {
   DiagnosticSink& sink;
   std::vector<Related> related{};  ///< "in cell (1, 2, 3)" of every diagnostic, if there is a cell
 
-  void operator()(Code code, const Place& place, std::vector<std::string> args) const { at(code, place, 0, 0, args); }
+  void operator()(Code code, const Place& place, std::vector<std::string> args) const {
+    at(code, place, 0, 0, std::move(args));
+  }
   /// `length` bytes from `offset` within the expression; length 0 = the whole attribute.
   void at(Code code, const Place& place, std::size_t offset, std::size_t length, std::vector<std::string> args) const;
 };
