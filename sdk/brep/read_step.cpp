@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "meso/brep/read_step.hpp"
+
+#include "import_solid.hpp"
+#include "shape_to_body.hpp"
+
+namespace meso::brep {
+
+std::optional<Body> read_step(const std::filesystem::path& file, const ReadStepOptions& options, const RunOptions& run,
+                              DiagnosticSink& sink) {
+  const SourceMap source(file.string(), {});
+  const auto solids = import_solids({.file = file}, {}, {}, {.source = source, .run = run, .sink = sink});
+  if (!solids) return std::nullopt;
+  TopoDS_Compound all;
+  BRep_Builder builder;
+  builder.MakeCompound(all);
+  for (const TopoDS_Shape& solid : *solids) builder.Add(all, solid);
+  ShapeToBodyOptions to_body;
+  if (options.deflection_mm)
+    to_body.mesh = MeshTolerance{.deflection_mm = *options.deflection_mm, .angle = options.angle_rad};
+  return shape_to_body(all, to_body, sink);
+}
+
+}  // namespace meso::brep

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+// The meso command: one verb per file, each a thin shell over a library call of the same name.
+
+#include <fmt/core.h>
+
+#include <CLI/CLI.hpp>
+#include <new>
+
+#include "run.hpp"
+#include "stop.hpp"
+
+namespace {
+
+void add_verbs(CLI::App& app, meso::cli::Run& run) {
+  using namespace meso::cli;
+  add_validate(app, run);
+  add_info(app, run);
+  add_canonical(app, run);
+#ifdef MESO_CLI_EVAL
+  add_eval(app, run);
+#endif
+#ifdef MESO_CLI_BREP
+  add_convert(app, run);
+  add_compare(app, run);
+  add_verify(app, run);
+#endif
+#if defined(MESO_CLI_BREP) && defined(MESO_CLI_RENDER)
+  add_render(app, run);
+#endif
+  add_formats(app, run);
+}
+
+int run_verb(meso::cli::Run& run) {
+  try {
+    return run.action();
+  } catch (const std::bad_alloc&) {
+    run.sink.report({.code = meso::Code::limit_memory,
+                     .args = {run.flags.max_memory.empty() ? "this machine's memory" : run.flags.max_memory}});
+  } catch (const std::exception& e) {
+    run.sink.report({.code = meso::Code::internal, .args = {e.what()}});
+  }
+  return run.finish();
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  meso::cli::watch_stop_signals();
+  CLI::App app("Meso: mesostructures as documents. Reads, validates, evaluates, realises and measures them.", "meso");
+  app.set_version_flag("--version", MESO_VERSION);
+  app.require_subcommand(1);
+  app.failure_message(CLI::FailureMessage::simple);
+  meso::cli::Run run;
+  add_verbs(app, run);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& e) {
+    const int code = app.exit(e);
+    return code == 0 ? 0 : 2;
+  }
+  return run_verb(run);
+}

@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "run.hpp"
+
+#include <fmt/core.h>
+#include <sys/resource.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cmath>
+
+#include "meso/base/number.hpp"
+#include "meso/expr/expression.hpp"
+#include "meso/validate/validate.hpp"
+#include "meso/xml/read.hpp"
+#include "stop.hpp"
+
+namespace meso::cli {
+namespace {
+
+void limit_memory(std::uint64_t bytes) {
+  // Private writable memory: what bad_alloc should be about. Address space (RLIMIT_AS) would count mapped files and
+  // reserved arenas.
+  const rlimit limit{bytes, bytes};
+  setrlimit(RLIMIT_DATA, &limit);
+}
+
+Json span_json(const Diagnostic& d) {
+  Json out;
+  out["code"] = info(d.code).name;
+  out["number"] = info(d.code).number;
+  out["severity"] = severity(d) == Severity::error ? "error" : severity(d) == Severity::warning ? "warning" : "info";
+  out["file"] = d.where.file;
+  out["line"] = d.where.line;
+  out["column"] = d.where.column;
+  out["offset"] = d.where.offset;
+  out["length"] = d.where.length;
+  out["path"] = d.path;
+  out["args"] = d.args;
+  out["message"] = message(d);
+  return out;
+}
+
+}  // namespace
+
+void add_set_flag(CLI::App& verb, Flags& flags) {
+  verb.add_option("--set", flags.set, "Override a document parameter, e.g. --set pitch=8mm (repeatable)")
+      ->type_name("ID=EXPR")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+}
+void add_part_flag(CLI::App& verb, Flags& flags) {
+  verb.add_option("--part", flags.part, "Make this part instead of the document's build")->type_name("ID");
+}
+void add_json_flag(CLI::App& verb, Flags& flags) {
+  verb.add_flag("--json", flags.json, "One JSON object on standard output");
+}
+void add_no_clobber_flag(CLI::App& verb, Flags& flags) {
+  verb.add_flag("--no-clobber", flags.no_clobber, "Refuse to replace an existing output");
+}
+void add_engine_flag(CLI::App& verb, Flags& flags) {
+  verb.add_option("--engine", flags.engine, "auto, brep or implicit")
+      ->type_name("NAME")
+      ->check(CLI::IsMember({"auto", "brep", "implicit"}));
+}
+void add_mesh_flags(CLI::App& verb, Flags& flags) {
+  verb.add_option("--deflection", flags.deflection, "Largest distance of triangles from the surface, e.g. 0.1mm")
+      ->type_name("LEN");
+  verb.add_option("--angle", flags.angle, "Largest angle between neighbouring triangles, e.g. 0.5rad or 20deg")
+      ->type_name("ANG");
+}
+void add_limit_flags(CLI::App& verb, Flags& flags) {
+  verb.add_option("--jobs", flags.jobs, "Threads; 0 is one per core. Output bytes do not depend on it")->type_name("N");
+  verb.add_option("--timeout", flags.timeout, "Give up after this many seconds")
+      ->type_name("S")
+      ->check(CLI::PositiveNumber);
+  verb.add_option("--max-memory", flags.max_memory, "Give up beyond this much memory, e.g. 2G")->type_name("SIZE");
+  verb.add_option("--max-cells", flags.max_cells, "Refuse patterns with more cells (10000000)")->type_name("N");
+  verb.add_option("--progress", flags.progress, "auto, bar, json or none")
+      ->type_name("STYLE")
+      ->check(CLI::IsMember({"auto", "bar", "json", "none"}));
+}
+
+RunOptions Run::options() {
+  RunOptions out;
+  out.jobs = flags.jobs;
+  out.max_cells = flags.max_cells;
+  if (flags.timeout > 0) {
+    out.deadline = std::chrono::steady_clock::now() + std::chrono::duration_cast<std::chrono::steady_clock::duration>(
+                                                          std::chrono::duration<double>(flags.timeout));
+    end_after(flags.timeout);
+  }
+  if (!flags.max_memory.empty()) {
+    if (const auto bytes = parse_size(flags.max_memory)) {
+      out.max_memory_bytes = *bytes;
+      limit_memory(*bytes);
+    } else {
+      usage_error("--max-memory: '" + flags.max_memory + "' is not a size such as 512M or 2G");
+    }
+  }
+  out.cancelled = stop_requested;
+  progress_.emplace(progress_style(flags.progress));
+  out.progress = [this](std::string_view stage, double fraction) { progress_->show(stage, fraction); };
+  return out;
+}
+
+std::optional<CheckedDocument> Run::open(const std::string& file) {
+  auto read = read_document_file(file, sink);
+  if (!read) return std::nullopt;
+  return validate(std::move(read->document), std::move(read->source), std::filesystem::path(file).parent_path(), sink);
+}
+
+void Run::print_diagnostics() {
+  if (progress_) progress_->clear();
+  for (const Diagnostic& d : sink.diagnostics()) fmt::print(stderr, "{}\n", render(d));
+  if (sink.truncated()) fmt::print(stderr, "... and more: {} errors in all\n", sink.error_count());
+}
+
+int Run::finish() {
+  print_diagnostics();
+  const auto& all = sink.diagnostics();
+  const auto first =
+      std::find_if(all.begin(), all.end(), [](const Diagnostic& d) { return severity(d) == Severity::error; });
+  return first == all.end() ? 0 : info(first->code).exit_code;
+}
+
+int Run::finish(Json report) {
+  report["diagnostics"] = diagnostics_json(sink);
+  const int code = finish();
+  if (flags.json) fmt::print("{}\n", report.dump(2, ' ', false, Json::error_handler_t::replace));
+  return code;
+}
+
+std::optional<double> Run::positive_value(const std::string& text, LengthUnit unit, const char* flag) {
+  const auto parsed = expr::parse_expression(text, unit);
+  if (parsed.expression && parsed.expression->names().empty()) {
+    const auto value = expr::evaluate(*parsed.expression, {});
+    if (value && value.value > 0) return value.value;
+  }
+  usage_error(std::string(flag) + ": '" + text + "' is not a positive value such as 0.1mm or 0.5rad");
+  return std::nullopt;
+}
+
+std::optional<double> Run::length_mm(const std::string& text, LengthUnit unit, const char* flag) {
+  const auto value = positive_value(text, unit, flag);
+  return value ? std::optional(*value * millimeters_per(unit)) : std::nullopt;
+}
+
+std::optional<double> Run::angle_rad(const std::string& text, const char* flag) {
+  return positive_value(text, LengthUnit::millimeter, flag);
+}
+
+Json diagnostics_json(const DiagnosticSink& sink) {
+  Json out = Json::array();
+  for (const Diagnostic& d : sink.diagnostics()) out.push_back(span_json(d));
+  return out;
+}
+
+std::uint64_t peak_memory_bytes() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
+}
+
+std::optional<std::uint64_t> parse_size(std::string_view text) {
+  const std::size_t digits = text.find_first_not_of("0123456789.");
+  const auto number = parse_number(text.substr(0, digits));
+  if (!number || *number <= 0) return std::nullopt;
+  const std::string_view suffix = digits == std::string_view::npos ? "" : text.substr(digits);
+  static constexpr std::string_view prefixes = "KMGT";
+  if (suffix.empty() || suffix == "B") return static_cast<std::uint64_t>(*number);
+  const std::size_t power = prefixes.find(suffix[0]);
+  const std::string_view rest = suffix.substr(1);
+  if (power == std::string_view::npos || (!rest.empty() && rest != "B" && rest != "iB")) return std::nullopt;
+  return static_cast<std::uint64_t>(std::ldexp(*number, static_cast<int>(10 * (power + 1))));
+}
+
+}  // namespace meso::cli

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/core.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+
+#include "meso/base/output_file.hpp"
+#include "meso/xml/read.hpp"
+#include "meso/xml/write.hpp"
+#include "run.hpp"
+#include "stop.hpp"
+
+namespace meso::cli {
+namespace {
+
+int canonical(Run& run, const std::string& in, const std::string& out) {
+  const auto read = read_document_file(in, run.sink);
+  if (!read) return run.finish();
+  const std::string bytes = canonical_document(read->document);
+  if (out.empty()) {
+    std::fwrite(bytes.data(), 1, bytes.size(), stdout);
+  } else {
+    clean_on_stop(out);
+    auto file = OutputFile::create(out, run.existing_file(), run.sink);
+    if (file && file->write(bytes)) (void)file->commit(run.sink);
+  }
+  return run.finish();
+}
+
+}  // namespace
+
+void add_canonical(CLI::App& app, Run& run) {
+  CLI::App* verb = app.add_subcommand("canonical", "Write the one canonical byte form of a document");
+  static std::string in, out;
+  verb->add_option("IN", in, "Document (.meso)")->required();
+  verb->add_option("OUT", out, "Output file; standard output if absent");
+  add_no_clobber_flag(*verb, run.flags);
+  verb->callback([&run] { run.action = [&run] { return canonical(run, in, out); }; });
+}
+
+}  // namespace meso::cli

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/core.h>
+
+#include <CLI/CLI.hpp>
+
+#include "run.hpp"
+
+namespace meso::cli {
+namespace {
+
+struct Format {
+  const char* extension;
+  const char* name;
+  bool reads, writes;
+  const char* note;
+};
+
+constexpr Format formats[] = {
+    {".meso", "Meso document", true, true, "convert's input; canonical writes it"},
+#ifdef MESO_CLI_BREP
+    {".step", "STEP AP214 (also .stp)", true, true, "exact; imported by documents, written by convert"},
+    {".brep", "OpenCASCADE B-rep", false, true, "exact"},
+    {".stl", "STL, binary or --ascii", true, true, "triangles; imported by documents as a faceted solid"},
+#endif
+#ifdef MESO_CLI_EVAL
+    {".csv", "placed cells", false, true, "written by eval"},
+    {".json", "placed cells", false, true, "written by eval"},
+#endif
+#ifdef MESO_CLI_RENDER
+    {".png", "picture", false, true, "written by render"},
+#endif
+};
+
+}  // namespace
+
+void add_formats(CLI::App& app, Run& run) {
+  CLI::App* verb = app.add_subcommand("formats", "List the file formats this build reads and writes");
+  add_json_flag(*verb, run.flags);
+  verb->callback([&run] {
+    run.action = [&run] {
+      Json report, list = Json::array();
+      for (const Format& f : formats) {
+        list.push_back(
+            {{"extension", f.extension}, {"name", f.name}, {"reads", f.reads}, {"writes", f.writes}, {"note", f.note}});
+        if (!run.flags.json) {
+          fmt::print("{:<7} {:<28} {:<5} {:<6} {}\n", f.extension, f.name, f.reads ? "read" : "",
+                     f.writes ? "write" : "", f.note);
+        }
+      }
+      report["formats"] = list;
+      return run.finish(std::move(report));
+    };
+  });
+}
+
+}  // namespace meso::cli

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/core.h>
+
+#include <CLI/CLI.hpp>
+
+#include "make_options.hpp"
+#include "meso/operations/convert.hpp"
+#include "meso/operations/load_mesh.hpp"
+#include "meso/render/picture.hpp"
+#include "run.hpp"
+#include "stop.hpp"
+
+namespace meso::cli {
+namespace {
+
+int render_verb(Run& run, const std::string& in, const std::string& out, const picture::RenderOptions& look) {
+  if (!out.ends_with(".png")) run.usage_error("'" + out + "': render writes .png");
+  const auto options = run.sink.has_errors() ? std::nullopt : make_options(run);
+  if (!options) return run.finish();
+  clean_on_stop(out);
+  const auto mesh = operations::load_mesh(in, *options, run.sink);
+  if (!mesh) return run.finish();
+  const auto image = picture::draw(*mesh, look, options->run, run.sink);
+  if (!image) return run.finish();
+  auto file = OutputFile::create(out, run.existing_file(), run.sink);
+  if (file && file->write(picture::png(*image))) (void)file->commit(run.sink);
+  const int code = run.finish();
+  if (code == 0)
+    fmt::print(stderr, "{}: {} x {}, {} triangles\n", out, image->width, image->height, mesh->triangles.size());
+  return code;
+}
+
+}  // namespace
+
+void add_render(CLI::App& app, Run& run) {
+  CLI::App* verb = app.add_subcommand("render", "Draw a document, .step, .stp or .stl as one well-lit picture (.png)");
+  static std::string in, out;
+  static picture::RenderOptions look;
+  verb->add_option("IN", in, "Document or geometry")->required();
+  verb->add_option("OUT", out, "Picture (.png)")->required();
+  verb->add_option("--width", look.width, "Pixels (1200)")->check(CLI::Range(16, 16384));
+  verb->add_option("--height", look.height, "Pixels (900)")->check(CLI::Range(16, 16384));
+  add_set_flag(*verb, run.flags);
+  add_part_flag(*verb, run.flags);
+  add_mesh_flags(*verb, run.flags);
+  add_limit_flags(*verb, run.flags);
+  add_no_clobber_flag(*verb, run.flags);
+  verb->callback([&run] { run.action = [&run] { return render_verb(run, in, out, look); }; });
+}
+
+}  // namespace meso::cli

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// Audits of geometry files that somebody else may have written.
+
+#include "meso/operations/verify.hpp"
+
+namespace meso::operations {
+
+/// Closed, oriented, no facet folded, no contact of the surface with itself, positive volume.
+[[nodiscard]] std::optional<VerifyReport> audit_stl(const std::filesystem::path& file, DiagnosticSink& sink);
+/// The same questions to the exact boundary representation, as OpenCASCADE reads it.
+[[nodiscard]] std::optional<VerifyReport> audit_step(const std::filesystem::path& file, const RunOptions& run,
+                                                     DiagnosticSink& sink);
+
+}  // namespace meso::operations

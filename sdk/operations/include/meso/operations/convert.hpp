@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// From a document to a file of geometry: the whole way in one call.
+//
+//   DiagnosticSink sink;
+//   const auto made = operations::make_body("ibeam.meso", {}, sink);
+//   if (made) operations::write_body(*made, "ibeam.step", {}, sink);
+//   const auto report = operations::convert("ibeam.meso", "ibeam.stl", {}, sink);   // both, with measures
+//
+// The extension of the output decides the format: .step .stp .brep .stl. Output files appear whole or not at all.
+// Lengths in millimetres, angles in radians. Thread rule: calls are independent of each other.
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "meso/base/run_options.hpp"
+#include "meso/base/triangle_mesh.hpp"
+#include "meso/brep/measure.hpp"
+#include "meso/brep/realise.hpp"
+#include "meso/eval/evaluation.hpp"
+
+namespace meso::operations {
+
+struct MakeOptions {
+  std::vector<eval::Override> overrides{};
+  std::string part{};                     ///< empty: the document's build
+  bool mesh = false;                      ///< triangles wanted
+  std::optional<double> deflection_mm{};  ///< absent: the document's, else 0.02 times the smallest cell edge, else
+                                          ///< 0.001 times the body's diagonal
+  std::optional<double> angle_rad{};      ///< absent: the document's, else 0.5
+  RunOptions run{};
+};
+
+/// Wall-clock seconds of the stages.
+struct Seconds {
+  double read = 0, evaluate = 0, realise = 0, write = 0, total = 0;
+};
+
+struct Made {
+  eval::Evaluation evaluation;
+  brep::Realisation realisation;
+  double deflection_mm = 0, angle_rad = 0;
+  Seconds seconds;
+};
+
+/// Reads, validates, evaluates and realises. An empty body is a diagnostic.
+[[nodiscard]] std::optional<Made> make_body(const std::filesystem::path& document, const MakeOptions& options,
+                                            DiagnosticSink& sink);
+
+struct WriteOptions {
+  bool ascii = false;  ///< STL only
+  bool no_clobber = false;
+};
+struct Written {
+  std::uint64_t bytes = 0;
+  std::uint64_t triangles = 0;
+};
+[[nodiscard]] std::optional<Written> write_body(const brep::Body& body, const std::filesystem::path& file,
+                                                const WriteOptions& options, DiagnosticSink& sink);
+
+/// True for the extensions that need triangles; empty for extensions nothing writes.
+[[nodiscard]] std::optional<bool> output_needs_mesh(const std::filesystem::path& file);
+
+struct ConvertReport {
+  std::string engine = "brep";
+  std::string way;  ///< how the engine built the body: lattice, voids, boolean, direct
+  brep::CellCounts cells;
+  brep::Measures measures;
+  std::uint64_t fragments = 0, triangles = 0, bytes = 0;
+  bool closed = false;
+  double deflection_mm = 0, angle_rad = 0;
+  Seconds seconds;
+};
+[[nodiscard]] std::optional<ConvertReport> convert(const std::filesystem::path& in, const std::filesystem::path& out,
+                                                   MakeOptions options, const WriteOptions& write,
+                                                   DiagnosticSink& sink);
+
+/// All triangles of a meshed body, points shared.
+[[nodiscard]] TriangleMesh triangle_mesh(const brep::Body& body);
+
+}  // namespace meso::operations

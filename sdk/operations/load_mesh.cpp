@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "meso/operations/load_mesh.hpp"
+
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <iterator>
+#include <system_error>
+
+#include "file_extension.hpp"
+#include "meso/brep/read_step.hpp"
+#include "meso/import_surface_mesh/read_stl.hpp"
+#include "read_mesh.hpp"
+
+namespace meso::operations {
+
+std::optional<TriangleMesh> read_stl_file(const std::filesystem::path& file, DiagnosticSink& sink) {
+  std::ifstream in(file, std::ios::binary);
+  if (!in) {
+    sink.report({.code = Code::file_not_found, .args = {file.string(), std::generic_category().message(errno)}});
+    return std::nullopt;
+  }
+  const std::string bytes((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
+  return read_stl(bytes, file.string(), sink);
+}
+
+std::optional<TriangleMesh> load_mesh(const std::filesystem::path& file, MakeOptions options, DiagnosticSink& sink) {
+  const std::string extension = lower_extension(file);
+  if (extension == ".stl") return read_stl_file(file, sink);
+  if (extension == ".step" || extension == ".stp") {
+    const auto body = brep::read_step(
+        file, {.deflection_mm = options.deflection_mm.value_or(0.1), .angle_rad = options.angle_rad.value_or(0.3)},
+        options.run, sink);
+    return body ? std::optional(triangle_mesh(*body)) : std::nullopt;
+  }
+  options.mesh = true;
+  const auto made = make_body(file, options, sink);
+  return made ? std::optional(triangle_mesh(made->realisation.body)) : std::nullopt;
+}
+
+}  // namespace meso::operations

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <cstdlib>
+
+#include "file_extension.hpp"
+#include "meso/base/number.hpp"
+#include "meso/base/output_file.hpp"
+#include "meso/brep/triangles.hpp"
+#include "meso/brep/write_brep.hpp"
+#include "meso/export_step/write_step.hpp"
+#include "meso/export_stl/write_stl.hpp"
+#include "meso/operations/convert.hpp"
+
+namespace meso::operations {
+namespace {
+
+enum class Format { step, brep, stl };
+
+std::optional<Format> format_of(const std::filesystem::path& file) {
+  const std::string extension = lower_extension(file);
+  if (extension == ".step" || extension == ".stp") return Format::step;
+  if (extension == ".brep") return Format::brep;
+  if (extension == ".stl") return Format::stl;
+  return std::nullopt;
+}
+
+/// The header's date is fixed unless the build environment states one (reproducible-builds.org).
+std::int64_t source_date_epoch() {
+  const char* text =
+      std::getenv("SOURCE_DATE_EPOCH");  // NOLINT(concurrency-mt-unsafe): nothing here writes the environment
+  return text == nullptr ? 0 : parse_integer(text).value_or(0);
+}
+
+std::optional<Written> write_format(Format format, const brep::Body& body, const std::string& name, bool ascii,
+                                    ByteSink& out, DiagnosticSink& sink) {
+  switch (format) {
+    case Format::step:
+      return Written{.bytes = write_step(body, {.name = name, .timestamp = source_date_epoch()}, out).bytes};
+    case Format::stl: {
+      const StlCounts counts = write_stl(brep::triangles_of(body), ascii ? StlFormat::ascii : StlFormat::binary, out);
+      return Written{.bytes = counts.bytes, .triangles = counts.triangles};
+    }
+    case Format::brep: {
+      const auto bytes = brep::write_brep(body, out, sink);
+      return bytes ? std::optional(Written{.bytes = *bytes}) : std::nullopt;
+    }
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::optional<bool> output_needs_mesh(const std::filesystem::path& file) {
+  const auto format = format_of(file);
+  return format ? std::optional(*format == Format::stl) : std::nullopt;
+}
+
+std::optional<Written> write_body(const brep::Body& body, const std::filesystem::path& file,
+                                  const WriteOptions& options, DiagnosticSink& sink) {
+  const auto format = format_of(file);
+  if (!format) {
+    sink.report(
+        {.code = Code::usage, .args = {"'" + file.string() + "': the extension names no format that is written here"}});
+    return std::nullopt;
+  }
+  auto out = OutputFile::create(file.string(), options.no_clobber ? ExistingFile::refuse : ExistingFile::replace, sink);
+  if (!out) return std::nullopt;
+  auto written = write_format(*format, body, file.stem().string(), options.ascii, *out, sink);
+  return written && out->commit(sink) ? written : std::nullopt;
+}
+
+}  // namespace meso::operations
