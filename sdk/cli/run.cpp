@@ -130,12 +130,22 @@ int Run::finish(Json report) {
   return code;
 }
 
-std::optional<double> Run::positive_value(const std::string& text, LengthUnit unit, const char* flag) {
+namespace {
+
+std::optional<double> constant(const std::string& text, LengthUnit unit) {
   const auto parsed = expr::parse_expression(text, unit);
-  if (parsed.expression && parsed.expression->names().empty()) {
-    const auto value = expr::evaluate(*parsed.expression, {});
-    if (value && value.value > 0) return value.value;
-  }
+  if (!parsed.expression || !parsed.expression->is_constant()) return std::nullopt;
+  const auto value = expr::evaluate(*parsed.expression, {});
+  return value ? std::optional(value.value) : std::nullopt;
+}
+
+}  // namespace
+
+std::optional<double> Run::value_mm(const std::string& text) { return constant(text, LengthUnit::millimeter); }
+
+std::optional<double> Run::positive_value(const std::string& text, LengthUnit unit, const char* flag) {
+  const auto value = constant(text, unit);
+  if (value && *value > 0) return value;
   usage_error(std::string(flag) + ": '" + text + "' is not a positive value such as 0.1mm or 0.5rad");
   return std::nullopt;
 }

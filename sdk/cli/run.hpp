@@ -67,6 +67,8 @@ class Run {
   /// A length or angle of the command line such as 0.1mm or 20deg: millimetres or radians. Reports a usage error and
   /// gives nothing if it is none.
   [[nodiscard]] std::optional<double> length_mm(const std::string& text, LengthUnit unit, const char* flag);
+  /// Any length, also negative, without a report.
+  [[nodiscard]] static std::optional<double> value_mm(const std::string& text);
   [[nodiscard]] std::optional<double> angle_rad(const std::string& text, const char* flag);
 
  private:

@@ -13,8 +13,20 @@
 namespace meso::cli {
 namespace {
 
-int render_verb(Run& run, const std::string& in, const std::string& out, const picture::RenderOptions& look) {
+/// "z=5mm" as a cut; empty: a usage error was reported.
+std::optional<picture::Cut> parse_cut(const std::string& text, Run& run) {
+  const std::size_t axis = text.empty() ? std::string::npos : std::string_view("xyz").find(text[0]);
+  if (axis != std::string::npos && text.size() > 2 && text[1] == '=') {
+    if (const auto position = run.value_mm(text.substr(2))) return picture::Cut{.axis = axis, .position = *position};
+  }
+  run.usage_error("--cut: '" + text + "' is not a plane such as z=5mm");
+  return std::nullopt;
+}
+
+int render_verb(Run& run, const std::string& in, const std::string& out, const std::string& cut,
+                picture::RenderOptions look) {
   if (!out.ends_with(".png")) run.usage_error("'" + out + "': render writes .png");
+  if (!cut.empty()) look.cut = parse_cut(cut, run);
   const auto options = run.sink.has_errors() ? std::nullopt : make_options(run);
   if (!options) return run.finish();
   clean_on_stop(out);
@@ -34,18 +46,20 @@ int render_verb(Run& run, const std::string& in, const std::string& out, const p
 
 void add_render(CLI::App& app, Run& run) {
   CLI::App* verb = app.add_subcommand("render", "Draw a document, .step, .stp or .stl as one well-lit picture (.png)");
-  static std::string in, out;
+  static std::string in, out, cut;
   static picture::RenderOptions look;
   verb->add_option("IN", in, "Document or geometry")->required();
   verb->add_option("OUT", out, "Picture (.png)")->required();
   verb->add_option("--width", look.width, "Pixels (1200)")->check(CLI::Range(16, 16384));
   verb->add_option("--height", look.height, "Pixels (900)")->check(CLI::Range(16, 16384));
+  verb->add_option("--cut", cut, "Show the section in a plane, e.g. z=5mm; the half towards the viewer is left out")
+      ->type_name("AXIS=LEN");
   add_set_flag(*verb, run.flags);
   add_part_flag(*verb, run.flags);
   add_mesh_flags(*verb, run.flags);
   add_limit_flags(*verb, run.flags);
   add_no_clobber_flag(*verb, run.flags);
-  verb->callback([&run] { run.action = [&run] { return render_verb(run, in, out, look); }; });
+  verb->callback([&run] { run.action = [&run] { return render_verb(run, in, out, cut, look); }; });
 }
 
 }  // namespace meso::cli

@@ -14,6 +14,7 @@ constexpr double lamp_radius = 0.05;  // as seen from distance 1: shadows soften
 constexpr double clearance = 2e-4;    // of the part's radius: rays start off the surface they leave
 
 constexpr Color metal{0.30, 0.385, 0.475};
+constexpr Color cut_metal{0.60, 0.30, 0.14};     // a section is told from the surface at a glance
 constexpr Color metal_bounce{0.26, 0.33, 0.41};  // light that reaches a spot from other metal
 constexpr Color lamp{2.5, 2.36, 2.16};
 
@@ -53,8 +54,7 @@ Samples::Point Samples::next() {
   return {u_ * 0x1p-32, v_ * 0x1p-32};
 }
 
-Studio::Studio(const View& view, const Surface& surface, const Tracer& tracer)
-    : vertical_(view.vertical), surface_(surface), tracer_(tracer) {
+Studio::Studio(const View& view, const Tracer& tracer) : vertical_(view.vertical), tracer_(tracer) {
   const Vec3 level = cross(view.right, view.vertical);  // towards the viewer, along the horizon
   to_lamp_ = normalized(-0.62 * view.right + 1.0 * view.vertical + 0.55 * level);
 }
@@ -89,8 +89,7 @@ double Studio::lamp_light(const Surface::Spot& spot, Samples& samples) const {
   return tracer_.blocked(start, direction, HUGE_VAL) ? 0 : slope;
 }
 
-Color Studio::shade(const Tracer::Hit& hit, Vec3 to_viewer, Samples& samples) const {
-  Surface::Spot spot = surface_.at(hit.triangle, hit.u, hit.v);
+Color Studio::shade(Surface::Spot spot, Vec3 to_viewer, Samples& samples) const {
   if (dot(spot.facet_normal, to_viewer) < 0) {  // an open or inverted mesh, seen from behind
     spot.facet_normal = -spot.facet_normal;
     spot.normal = -spot.normal;
@@ -103,7 +102,7 @@ Color Studio::shade(const Tracer::Hit& hit, Vec3 to_viewer, Samples& samples) co
   const Vec3 start = spot.position + clearance * spot.facet_normal;
   const Color from_sky = sky_light(spot, start, samples);
   const double from_lamp = lamp_light(spot, samples);
-  const Color diffuse = metal * (0.62 * from_sky + from_lamp * lamp / std::numbers::pi);
+  const Color diffuse = (spot.section ? cut_metal : metal) * (0.62 * from_sky + from_lamp * lamp / std::numbers::pi);
 
   // Brushed metal: the sky mirrored, dimmed where the spot hardly sees it, and a broad highlight of the lamp.
   const double cosine = std::max(0.0, dot(spot.normal, to_viewer));

@@ -29,10 +29,10 @@ class Samples {
 
 class Studio {
  public:
-  Studio(const View& view, const Surface& surface, const Tracer& tracer);
+  Studio(const View& view, const Tracer& tracer);
 
-  /// What the viewer sees at a hit; `to_viewer` is a unit vector.
-  [[nodiscard]] Color shade(const Tracer::Hit& hit, Vec3 to_viewer, Samples& samples) const;
+  /// What the viewer sees at a spot; `to_viewer` is a unit vector.
+  [[nodiscard]] Color shade(Surface::Spot spot, Vec3 to_viewer, Samples& samples) const;
   /// The paper at a height of the picture, 0 at the top, 1 at the bottom.
   [[nodiscard]] static Color paper(double height);
 
@@ -42,7 +42,6 @@ class Studio {
   [[nodiscard]] double lamp_light(const Surface::Spot& spot, Samples& samples) const;
 
   Vec3 vertical_, to_lamp_;
-  const Surface& surface_;
   const Tracer& tracer_;
 };
 

@@ -19,13 +19,13 @@ double light_at(const TriangleMesh& mesh, Vec3 from, Vec3 direction) {
   const Surface surface(mesh);
   const auto tracer = Tracer::over(surface);
   if (!tracer) return -1;
-  const Studio studio(view_for({.up = Up::z}, {}), surface, *tracer);
+  const Studio studio(view_for({.up = Up::z}, {}), *tracer);
   const auto hit = tracer->first_hit(from, direction);
   if (!hit) return -1;
   double sum = 0;
   for (std::uint32_t x = 0; x < 64; ++x) {
     Samples samples(x, 7);
-    sum += studio.shade(*hit, -direction, samples).y;
+    sum += studio.shade(surface.at(hit->triangle, hit->u, hit->v), -direction, samples).y;
   }
   return sum / 64;
 }

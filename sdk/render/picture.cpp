@@ -41,7 +41,29 @@ struct Scene {
   Camera camera;
   Studio studio;
   const Tracer& tracer;
+  const Surface& surface;
 };
+
+/// What a camera ray sees: the surface, or the section if the ray comes into the kept half inside the material.
+std::optional<Surface::Spot> first_spot(const Scene& scene, Vec3 direction) {
+  const Vec3 eye = scene.camera.position();
+  const auto entry = scene.tracer.entry(eye, direction);
+  const auto hit = scene.tracer.first_hit(entry.value_or(eye), direction);
+  if (!hit) return std::nullopt;
+  const Surface::Spot spot = scene.surface.at(hit->triangle, hit->u, hit->v);
+  if (!entry || dot(spot.facet_normal, direction) <= 0) return spot;
+  const Vec3 normal = scene.tracer.section_normal();
+  return Surface::Spot{.position = *entry, .facet_normal = normal, .normal = normal, .section = true, .lifted = *entry};
+}
+
+/// The plane of a cut in the surface's own coordinates, its normal towards the viewer.
+Tracer::HalfSpace half_space(const Cut& cut, const Surface& surface, Vec3 eye) {
+  Vec3 on_plane, normal;
+  on_plane[cut.axis] = cut.position;
+  normal[cut.axis] = 1;
+  const double offset = surface.to_unit_ball(on_plane)[cut.axis];
+  return eye[cut.axis] > offset ? Tracer::HalfSpace{normal, offset} : Tracer::HalfSpace{-normal, -offset};
+}
 
 Color pixel(const Scene& scene, const RenderOptions& options, std::uint32_t x, std::uint32_t y) {
   Samples samples(x, y);
@@ -52,8 +74,8 @@ Color pixel(const Scene& scene, const RenderOptions& options, std::uint32_t x, s
     const std::uint32_t column = i % n, row = i / n;
     const double px = x + (column + (row + 0.5) / n) / n, py = y + (row + (n - column - 0.5) / n) / n;
     const Vec3 direction = scene.camera.ray(px, py);
-    const auto hit = scene.tracer.first_hit(scene.camera.position(), direction);
-    const Color color = hit ? scene.studio.shade(*hit, -direction, samples) : Studio::paper(py / options.height);
+    const auto spot = first_spot(scene, direction);
+    const Color color = spot ? scene.studio.shade(*spot, -direction, samples) : Studio::paper(py / options.height);
     // Developed one by one: a glint next to paper must not outshine the whole pixel.
     sum += {developed(color.x), developed(color.y), developed(color.z)};
   }
@@ -72,14 +94,15 @@ std::optional<Image> draw(const TriangleMesh& mesh, const RenderOptions& options
     sink.report({.code = Code::render_nothing});
     return std::nullopt;
   }
-  const std::optional<Tracer> tracer = Tracer::over(surface);
+  std::optional<Tracer> tracer = Tracer::over(surface);
   if (!tracer) {
     sink.report({.code = Code::render_memory, .args = {std::to_string(surface.triangles().size())}});
     return std::nullopt;
   }
   const View view = view_for(options, bounds_of(surface.points()));
-  const Scene scene{Camera(view, surface.points(), options.width, options.height), Studio(view, surface, *tracer),
-                    *tracer};
+  const Scene scene{Camera(view, surface.points(), options.width, options.height), Studio(view, *tracer), *tracer,
+                    surface};
+  if (options.cut) tracer->keep_only(half_space(*options.cut, surface, scene.camera.position()));
 
   Image image{options.width, options.height, {}};
   image.rgb.resize(std::size_t{3} * options.width * options.height);

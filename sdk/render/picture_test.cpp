@@ -34,6 +34,31 @@ TEST(Draw, ASphereCoversItsDisk) {
   EXPECT_NEAR(covered, std::numbers::pi * radius * radius, 0.015 * covered);
 }
 
+/// Share of a sphere's disk that a section through its centre covers, by colour: the section is warm, all else is cool.
+double section_share(const TriangleMesh& mesh) {
+  DiagnosticSink sink;
+  const RenderOptions options{.width = 400, .height = 300, .up = Up::z, .cut = Cut{.axis = 2, .position = 0}};
+  const auto image = draw(mesh, options, {}, sink);
+  if (!image) return -1;
+  int warm = 0;
+  for (std::size_t i = 0; i < image->rgb.size(); i += 3) warm += image->rgb[i] > image->rgb[i + 2] + 20;
+  const double radius = 0.94 * 150;
+  return warm / (std::numbers::pi * radius * radius);
+}
+
+TEST(Draw, ACutThroughTheCentreShowsTheSectionForeshortened) {
+  EXPECT_NEAR(section_share(sphere_soup(25, 90)), std::sin(RenderOptions{}.elevation), 0.06);
+}
+
+TEST(Draw, ACutShowsHollowsAsHollows) {
+  TriangleMesh shell = sphere_soup(25, 60);
+  TriangleMesh hollow = sphere_soup(12.5, 60);
+  const auto first = static_cast<std::uint32_t>(shell.points.size());
+  shell.points.insert(shell.points.end(), hollow.points.begin(), hollow.points.end());
+  for (const auto& t : hollow.triangles) shell.triangles.push_back({first + t[0], first + t[2], first + t[1]});
+  EXPECT_NEAR(section_share(shell), 0.75 * section_share(sphere_soup(25, 60)), 0.02);
+}
+
 TEST(Draw, TheLampShinesOnTopAndFromTheLeft) {
   DiagnosticSink sink;
   RenderOptions options = small;

@@ -43,16 +43,16 @@ Surface::Surface(const TriangleMesh& mesh) {
 void Surface::weld(const TriangleMesh& mesh) {
   const Box3 bounds = bounds_of(mesh);
   if (bounds.empty()) return;
-  const Vec3 center = 0.5 * (bounds.min + bounds.max);
+  center_ = 0.5 * (bounds.min + bounds.max);
   const double size = 0.5 * norm(bounds.max - bounds.min);
-  const double scale = size > 0 ? 1 / size : 1;
+  scale_ = size > 0 ? 1 / size : 1;
 
   // Open addressing, at most half full; the first of equal points stands for all, so the order is the input's.
   std::vector<std::uint32_t> slots(std::bit_ceil(2 * mesh.points.size() + 1), none);
   std::vector<std::uint32_t> welded(mesh.points.size(), none);
   const auto weld_point = [&](std::uint32_t i) {
     if (welded[i] != none) return welded[i];
-    const Vec3 p = scale * (mesh.points[i] - center);
+    const Vec3 p = to_unit_ball(mesh.points[i]);
     std::size_t slot = hash(p) & (slots.size() - 1);
     while (slots[slot] != none && points_[slots[slot]] != p) slot = (slot + 1) & (slots.size() - 1);
     if (slots[slot] == none) {

@@ -18,10 +18,14 @@ class Surface {
   [[nodiscard]] const std::vector<Vec3>& points() const { return points_; }
   [[nodiscard]] const std::vector<std::array<std::uint32_t, 3>>& triangles() const { return triangles_; }
 
+  /// Where a point of the mesh's own space stands here.
+  [[nodiscard]] Vec3 to_unit_ball(Vec3 p) const { return scale_ * (p - center_); }
+
   struct Spot {
     Vec3 position;
     Vec3 facet_normal;
-    Vec3 normal;  ///< averaged over the facets around that lie within the crease angle
+    Vec3 normal;           ///< averaged over the facets around that lie within the crease angle
+    bool section = false;  ///< a cut through the material
     Vec3 lifted;  ///< where the smooth surface would be: shadow rays start here, or coarse facets shade themselves
   };
   /// The spot with barycentric coordinates (1 - u - v, u, v) of a triangle.
@@ -36,6 +40,8 @@ class Surface {
   void link_corners();
   [[nodiscard]] Vec3 smooth_normal(std::uint32_t triangle, std::uint32_t point) const;
 
+  Vec3 center_;
+  double scale_ = 1;
   std::vector<Vec3> points_;
   std::vector<std::array<std::uint32_t, 3>> triangles_;
   std::vector<Normal> scaled_normals_;       ///< length is twice the facet's area

@@ -3,7 +3,8 @@
 
 #include <tbb/task_arena.h>
 
-#include <limits>
+#include <algorithm>
+#include <cmath>
 
 namespace meso::picture {
 namespace {
@@ -57,11 +58,26 @@ std::optional<Tracer> Tracer::over(const Surface& surface) {
   return tracer;
 }
 
+std::optional<Vec3> Tracer::entry(Vec3 origin, Vec3 direction) const {
+  if (!kept_ || dot(kept_->normal, origin) <= kept_->offset) return std::nullopt;
+  const double slope = dot(kept_->normal, direction);
+  if (slope >= 0) return std::nullopt;
+  return origin + ((kept_->offset - dot(kept_->normal, origin)) / slope) * direction;
+}
+
+double Tracer::exit(Vec3 origin, Vec3 direction) const {
+  if (!kept_) return HUGE_VAL;
+  const double slope = dot(kept_->normal, direction), left = kept_->offset - dot(kept_->normal, origin);
+  return slope > 0 ? left / slope : HUGE_VAL;
+}
+
 std::optional<Tracer::Hit> Tracer::first_hit(Vec3 origin, Vec3 direction) const {
+  const double end = exit(origin, direction);
+  if (end < 0) return std::nullopt;
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
   RTCRayHit ray{};
-  aim(ray.ray, origin, direction, std::numeric_limits<float>::infinity());
+  aim(ray.ray, origin, direction, static_cast<float>(end));
   ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
   rtcIntersect1(scene_.get(), &context, &ray);
   if (ray.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
@@ -69,10 +85,12 @@ std::optional<Tracer::Hit> Tracer::first_hit(Vec3 origin, Vec3 direction) const 
 }
 
 bool Tracer::blocked(Vec3 origin, Vec3 direction, double distance) const {
+  const double end = std::min(distance, exit(origin, direction));
+  if (end < 0) return false;
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
   RTCRay ray{};
-  aim(ray, origin, direction, static_cast<float>(distance));
+  aim(ray, origin, direction, static_cast<float>(end));
   rtcOccluded1(scene_.get(), &context, &ray);
   return ray.tfar < 0;  // Embree's sign for "blocked"
 }

@@ -16,6 +16,18 @@ class Tracer {
   /// Empty if memory does not suffice.
   [[nodiscard]] static std::optional<Tracer> over(const Surface& surface);
 
+  /// What is left of the part: the points p with dot(normal, p) <= offset. Rays see nothing else.
+  struct HalfSpace {
+    Vec3 normal;
+    double offset;
+  };
+  void keep_only(const HalfSpace& half) { kept_ = half; }
+  /// REQUIRES: keep_only() was called.
+  [[nodiscard]] Vec3 section_normal() const { return kept_->normal; }
+  /// Where a ray comes to the kept half from outside it; empty: it starts inside, or there is no cut, or it never comes
+  /// there.
+  [[nodiscard]] std::optional<Vec3> entry(Vec3 origin, Vec3 direction) const;
+
   struct Hit {
     std::uint32_t triangle;
     double u, v;
@@ -28,6 +40,10 @@ class Tracer {
     void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
     void operator()(RTCScene scene) const { rtcReleaseScene(scene); }
   };
+  /// Distance at which a ray leaves the kept half; negative: it has left it before it starts.
+  [[nodiscard]] double exit(Vec3 origin, Vec3 direction) const;
+
+  std::optional<HalfSpace> kept_;
   std::unique_ptr<RTCDeviceTy, Release> device_;
   std::unique_ptr<RTCSceneTy, Release> scene_;
 };

@@ -29,11 +29,19 @@ namespace meso::picture {
 /// those lie down, y up.
 enum class Up { automatic, x, y, z };
 
+/// The part is cut by the plane where the coordinate `axis` (0, 1, 2 = x, y, z) is `position` millimetres; the half
+/// towards the viewer is taken away and the section drawn in a colour of its own. The mesh must be closed.
+struct Cut {
+  std::size_t axis = 0;
+  double position = 0;
+};
+
 struct RenderOptions {
   std::uint32_t width = 1200, height = 900;  ///< pixels, 1 ... 16384
   Up up = Up::automatic;
-  double azimuth = 0.62;      ///< where the viewer stands: with z up, 0 is at -y and pi/2 at +x (cyclic for other ups)
-  double elevation = 0.46;    ///< viewer's height above the horizon, in (-pi/2, pi/2)
+  double azimuth = 0.62;    ///< where the viewer stands: with z up, 0 is at -y and pi/2 at +x (cyclic for other ups)
+  double elevation = 0.46;  ///< viewer's height above the horizon, in (-pi/2, pi/2)
+  std::optional<Cut> cut{};
   std::uint32_t samples = 2;  ///< 1 ... 8: n x n rays a pixel, each followed by five towards the light; 4 for print
 };
 
