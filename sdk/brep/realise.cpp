@@ -6,6 +6,7 @@
 
 #include "realise_fold.hpp"
 #include "realise_lattice.hpp"
+#include "realise_part.hpp"
 #include "shape_to_body.hpp"
 #include "solid_primitive.hpp"
 #include "solid_shape.hpp"
@@ -16,11 +17,6 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
-
-std::optional<MeshFineness> fineness(const RealiseOptions& options) {
-  if (!options.mesh) return {};
-  return MeshFineness{options.deflection_mm, options.angle_rad};
-}
 
 /// A body while the fold goes on: solids, or, after the last step, the repeated template of a lattice.
 struct Folded {
@@ -33,17 +29,17 @@ class PartFold {
   PartFold(const eval::Evaluation& evaluation, const RealiseOptions& options, DiagnosticSink& sink)
       : evaluation_(evaluation), options_(options), context_{evaluation.checked().source(), options.run, sink} {}
 
-  std::optional<Folded> fold(const Part& part, bool may_be_lattice) {
+  std::optional<Folded> fold(const Part& part, bool is_outermost) {
     Folded state;
     if (part.macrostructure) {
-      auto solids = macrostructure(part.macrostructure->text);
+      auto solids = macrostructure_solids(evaluation_, part.macrostructure->text, context_);
       if (!solids) return {};
       state.solids = std::move(*solids);
     }
     for (std::size_t i = 0; i < part.steps.size(); ++i) {
       options_.run.report("realise", static_cast<double>(i) / static_cast<double>(part.steps.size()));
       const bool last = i + 1 == part.steps.size();
-      if (!step(state, part, part.steps[i], may_be_lattice && last)) return {};
+      if (!step(state, part, part.steps[i], is_outermost && last)) return {};
     }
     return state;
   }
@@ -52,7 +48,7 @@ class PartFold {
   std::string way = "direct";
 
  private:
-  bool step(Folded& state, const Part& part, const Apply& apply, bool may_be_lattice) {
+  bool step(Folded& state, const Part& part, const Apply& apply, bool is_last) {
     FoldContext context{context_, apply, 0, options_.max_boolean_solids};
     if (apply.clearance) {
       const auto clearance = evaluation_.value(*apply.clearance, apply.id_in_source, "clearance", context_.sink);
@@ -65,7 +61,7 @@ class PartFold {
       const Pattern* pattern = evaluation_.find_pattern(apply.pattern->text);
       const auto cells = pattern != nullptr ? evaluation_.cells(*pattern, context_.sink) : std::nullopt;
       if (!cells) return false;
-      if (may_be_lattice && try_lattice(state, apply, *cells)) return true;
+      if (is_last && may_be_lattice(apply, state.solids) && try_lattice(state, *cells)) return true;
       if (context_.sink.has_errors()) return false;
       made = apply_cells(state.solids, *cells, context, counts);
     } else if (apply.part) {
@@ -77,11 +73,8 @@ class PartFold {
     return settle_fragments(state.solids, solids_before, context, part.id.text, counts);
   }
 
-  bool try_lattice(Folded& state, const Apply& apply, const eval::CellStream& cells) {
-    const bool clips = apply.operation == ApplyOperation::intersection &&
-                       apply.boundary.value_or(BoundaryRule::clip) == BoundaryRule::clip &&
-                       apply.fragments.value_or(FragmentRule::keep) == FragmentRule::keep;
-    if (!clips || cells.size() > options_.run.max_cells) return false;
+  bool try_lattice(Folded& state, const eval::CellStream& cells) {
+    if (cells.size() > options_.run.max_cells) return false;
     auto lattice = lattice_part(state.solids, cells, fineness(options_), context_);
     if (!lattice) return false;
     counts.placed += cells.size();
@@ -102,14 +95,6 @@ class PartFold {
     return apply_solids(body, operand->solids, context);
   }
 
-  std::optional<Solids> macrostructure(const std::string& id) {
-    const auto& all = evaluation_.document().macrostructures;
-    const auto found = std::ranges::find(all, id, [](const Macrostructure& m) { return m.id.text; });
-    if (found == all.end()) return {};
-    const auto shape = evaluation_.shape(*found, context_.sink);
-    return shape ? solid_from_shape(*shape, {}, context_) : std::nullopt;
-  }
-
   const eval::Evaluation& evaluation_;
   const RealiseOptions& options_;
   SolidContext context_;
@@ -123,19 +108,6 @@ void mesh_once(const Solids& solids, const MeshFineness& mesh) {
       shells.Add(it.Current().Located(TopLoc_Location()).Oriented(TopAbs_FORWARD));
   for (int i = 1; i <= shells.Extent(); ++i)
     BRepMesh_IncrementalMesh(shells(i), mesh.deflection, false, mesh.angle, true);
-}
-
-std::optional<Body> to_body(const Solids& solids, const RealiseOptions& options, DiagnosticSink& sink) {
-  ShapeToBodyOptions to_body_options;
-  if (const auto mesh = fineness(options)) {
-    mesh_once(solids, *mesh);
-    to_body_options.mesh = MeshTolerance{mesh->deflection, mesh->angle};
-  }
-  TopoDS_Compound compound;
-  const BRep_Builder builder;
-  builder.MakeCompound(compound);
-  for (const TopoDS_Shape& solid : solids) builder.Add(compound, solid);
-  return shape_to_body(compound, to_body_options, sink);
 }
 
 void place(Body& body, const Affine& world_from_part) {
@@ -158,6 +130,54 @@ void append(Realisation& to, Realisation from) {
 }
 
 }  // namespace
+
+std::optional<MeshFineness> fineness(const RealiseOptions& options) {
+  if (!options.mesh) return {};
+  return MeshFineness{options.deflection_mm, options.angle_rad};
+}
+
+std::optional<Body> to_body(const Solids& solids, const RealiseOptions& options, DiagnosticSink& sink) {
+  ShapeToBodyOptions to_body_options;
+  if (const auto mesh = fineness(options)) {
+    mesh_once(solids, *mesh);
+    to_body_options.mesh = MeshTolerance{mesh->deflection, mesh->angle};
+  }
+  TopoDS_Compound compound;
+  const BRep_Builder builder;
+  builder.MakeCompound(compound);
+  for (const TopoDS_Shape& solid : solids) builder.Add(compound, solid);
+  return shape_to_body(compound, to_body_options, sink);
+}
+
+std::optional<Solids> macrostructure_solids(const eval::Evaluation& evaluation, const std::string& id,
+                                            const SolidContext& context) {
+  const auto& all = evaluation.document().macrostructures;
+  const auto found = std::ranges::find(all, id, [](const Macrostructure& m) { return m.id.text; });
+  if (found == all.end()) return {};
+  const auto shape = evaluation.shape(*found, context.sink);
+  return shape ? solid_from_shape(*shape, {}, context) : std::nullopt;
+}
+
+bool may_be_lattice(const Apply& apply, const Solids& body) {
+  return apply.operation == (body.empty() ? ApplyOperation::union_ : ApplyOperation::intersection) &&
+         apply.boundary.value_or(BoundaryRule::clip) == BoundaryRule::clip &&
+         apply.fragments.value_or(FragmentRule::keep) == FragmentRule::keep;
+}
+
+const Part* chosen_part(const eval::Evaluation& evaluation, std::optional<std::string_view> part_id,
+                        DiagnosticSink& sink) {
+  const Document& document = evaluation.document();
+  const Part* part = part_id                      ? evaluation.find_part(*part_id)
+                     : document.parts.size() == 1 ? &document.parts.items.front()
+                                                  : nullptr;
+  if (part != nullptr) return part;
+  std::string ids;
+  for (const Part& p : document.parts) ids += (ids.empty() ? "" : ", ") + p.id.text;
+  sink.report({.code = Code::usage,
+               .args = {part_id ? "there is no part '" + std::string(*part_id) + "'; the parts are " + ids
+                                : "the document has no build; name one of its parts: " + ids}});
+  return nullptr;
+}
 
 std::optional<Realisation> realise(const eval::Evaluation& evaluation, const Part& part, const RealiseOptions& options,
                                    DiagnosticSink& sink) {
@@ -203,16 +223,8 @@ std::optional<Realisation> realise_build(const eval::Evaluation& evaluation, std
                                          const RealiseOptions& options, DiagnosticSink& sink) {
   const Document& document = evaluation.document();
   if (part_id || document.build.empty()) {
-    const Part* part = part_id                      ? evaluation.find_part(*part_id)
-                       : document.parts.size() == 1 ? &document.parts.items.front()
-                                                    : nullptr;
-    if (part != nullptr) return realise(evaluation, *part, options, sink);
-    std::string ids;
-    for (const Part& p : document.parts) ids += (ids.empty() ? "" : ", ") + p.id.text;
-    sink.report({.code = Code::usage,
-                 .args = {part_id ? "there is no part '" + std::string(*part_id) + "'; the parts are " + ids
-                                  : "the document has no build; name one of its parts: " + ids}});
-    return {};
+    const Part* part = chosen_part(evaluation, part_id, sink);
+    return part != nullptr ? realise(evaluation, *part, options, sink) : std::nullopt;
   }
   Realisation all;
   for (const BuildItem& item : document.build) {

@@ -86,12 +86,12 @@ class Collector {
   Collector(const eval::CellStream& cells, CellPart what, const SolidContext& context)
       : cells_(cells), what_(what), context_(context) {}
 
-  std::optional<CellSolids> collect() {
+  bool collect(std::uint64_t first, std::uint64_t last) {
     const bool complete = cells_.visit(
-        0, cells_.size(), [&](const eval::PlacedCell& cell) { return add(cell); }, context_.sink);
-    if (!complete || failed_) return {};
-    return std::move(result_);
+        first, last, [&](const eval::PlacedCell& cell) { return add(cell); }, context_.sink);
+    return complete && !failed_;
   }
+  CellSolids take() && { return std::move(result_); }
 
  private:
   bool add(const eval::PlacedCell& cell) {
@@ -125,8 +125,13 @@ class Collector {
   }
 
   [[nodiscard]] std::optional<eval::Shape> shape_of(const eval::PlacedCell& cell) const {
-    if (what_ == CellPart::body) return cells_.shape(cell, context_.sink);
-    return cells_.cell_region(cell, context_.sink);
+    auto shape = what_ == CellPart::body ? cells_.shape(cell, context_.sink) : cells_.cell_region(cell, context_.sink);
+    if (!shape || what_ != CellPart::body || !cells_.unit_cell().clip_to_box.value_or(false)) return shape;
+    auto region = cells_.cell_region(cell, context_.sink);
+    if (!region) return {};
+    const ElementId source = shape->source;
+    return eval::Shape{eval::BooleanShape{BooleanOperation::intersection, {std::move(*shape), std::move(*region)}},
+                       source};
   }
 
   std::optional<std::size_t> make(const Key& key, const eval::Shape& shape, const Affine& map) {
@@ -207,7 +212,17 @@ CoarseMesh CellSolids::mesh_of(const CellSolid& cell) const {
 }
 
 std::optional<CellSolids> cell_solids(const eval::CellStream& cells, CellPart what, const SolidContext& context) {
-  return Collector(cells, what, context).collect();
+  Collector collector(cells, what, context);
+  if (!collector.collect(0, cells.size())) return {};
+  return std::move(collector).take();
+}
+
+std::optional<CellSolids> cell_solids_at(const eval::CellStream& cells, std::span<const std::uint64_t> ordinals,
+                                         CellPart what, const SolidContext& context) {
+  Collector collector(cells, what, context);
+  for (const std::uint64_t ordinal : ordinals)
+    if (!collector.collect(ordinal, ordinal + 1)) return {};
+  return std::move(collector).take();
 }
 
 std::vector<bool> touching_cells(const CellSolids& cells) {

@@ -3,6 +3,7 @@
 // The placed cells of a pattern as solids: each different body is made once and placed often. Private.
 
 #include <optional>
+#include <span>
 
 #include "meso/eval/evaluation.hpp"
 #include "realise_clearance.hpp"
@@ -37,6 +38,11 @@ struct CellSolids {
 enum class CellPart { body, region };
 [[nodiscard]] std::optional<CellSolids> cell_solids(const eval::CellStream& cells, CellPart what,
                                                     const SolidContext& context);
+
+/// The same for the cells with these ordinals only, where they exist.
+[[nodiscard]] std::optional<CellSolids> cell_solids_at(const eval::CellStream& cells,
+                                                       std::span<const std::uint64_t> ordinals, CellPart what,
+                                                       const SolidContext& context);
 
 /// For each cell, whether it touches or overlaps another. May throw Standard_Failure.
 [[nodiscard]] std::vector<bool> touching_cells(const CellSolids& cells);

@@ -84,6 +84,7 @@ class CellStep {
   bool sort() {
     const std::vector<bool> touching = touching_cells(cells_);
     const bool is_union = operation() == ApplyOperation::union_;
+    if (!can_be_joined(touching, is_union)) return false;
     for (std::size_t i = 0; i < cells_.cells.size(); ++i) {
       if (!taken_[i]) continue;
       if (i % 64 == 0 && stopped()) return false;
@@ -103,6 +104,19 @@ class CellStep {
       }
     }
     return true;
+  }
+
+  /// Refuses early: cells that touch another and reach into the body are joined, whatever a closer look would find.
+  bool can_be_joined(const std::vector<bool>& touching, bool is_union) const {
+    std::size_t solids = 0;
+    for (std::size_t i = 0; i < cells_.cells.size() && solids <= context_.max_boolean_solids; ++i) {
+      if (!taken_[i] || !touching[i]) continue;
+      const Prototype& prototype = cells_.prototypes[cells_.cells[i].prototype];
+      if (prototype.mesh.points.empty()) continue;
+      if (is_union || boundary_.solid_at(cells_.cells[i].placement * prototype.mesh.points.front()) >= 0)
+        solids += prototype.solids.size();
+    }
+    return within_budget(solids, context_);
   }
 
   bool stopped() const {

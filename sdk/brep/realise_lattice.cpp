@@ -53,6 +53,13 @@ std::optional<AlignedLattice> aligned(const eval::CellStream::Lattice& lattice, 
   return out;
 }
 
+/// Cells that are cut to their boxes are their own intersection with all of these.
+TopoDS_Shape all_boxes(const AlignedLattice& lattice) {
+  Vec3 last = lattice.box.corner;
+  for (std::size_t a = 0; a < 3; ++a) last[a] += lattice.count[a] * lattice.box.size[a];
+  return BRepPrimAPI_MakeBox(to_pnt(lattice.box.corner), to_pnt(last)).Solid();
+}
+
 /// For each box axis, the box planes (numbered from the first cell's low side) that carry faces of the body; empty if a
 /// face lies elsewhere, or beyond the cells: what the outermost cells send over their boxes would be in the body, too.
 using PlaneNumbers = std::array<std::vector<std::int64_t>, 3>;
@@ -101,6 +108,28 @@ class Blocks {
                          block_of_[2][static_cast<std::size_t>(cell[2])])];
   }
   [[nodiscard]] std::uint64_t kept() const { return kept_; }
+
+  /// Walls of boxes between inside and outside.
+  [[nodiscard]] std::uint64_t walls() const {
+    std::uint64_t out = 0;
+    for (std::size_t a = 0; a < 3; ++a) {
+      const std::size_t b = (a + 1) % 3, c = (a + 2) % 3;
+      std::array<std::size_t, 3> at{};
+      for (at[b] = 0; at[b] + 1 < cuts_[b].size(); ++at[b])
+        for (at[c] = 0; at[c] + 1 < cuts_[c].size(); ++at[c]) {
+          const auto area = static_cast<std::uint64_t>((cuts_[b][at[b] + 1] - cuts_[b][at[b]]) *
+                                                       (cuts_[c][at[c] + 1] - cuts_[c][at[c]]));
+          bool before = false;
+          for (at[a] = 0; at[a] + 1 < cuts_[a].size(); ++at[a]) {
+            const bool here = inside_[block(at[0], at[1], at[2])];
+            if (here != before) out += area;
+            before = here;
+          }
+          if (before) out += area;
+        }
+    }
+    return out;
+  }
 
  private:
   [[nodiscard]] std::size_t block(std::size_t x, std::size_t y, std::size_t z) const {
@@ -188,11 +217,17 @@ std::optional<FirstCell> first_cell(const eval::CellStream& cells, DiagnosticSin
   return out;
 }
 
-}  // namespace
+/// What the aligned case consists of.
+struct Found {
+  AlignedLattice lattice;
+  CellShape cell;
+  std::shared_ptr<const Blocks> blocks;
+};
 
-std::optional<LatticePart> lattice_part(const Solids& macrostructure, const eval::CellStream& cells,
-                                        const std::optional<MeshFineness>& mesh, const SolidContext& context) {
-  const auto steps = cells.lattice();
+std::optional<Found> find_aligned(const Solids& macrostructure, const eval::CellStream& cells,
+                                  const SolidContext& context) {
+  const bool cut = cells.unit_cell().clip_to_box.value_or(false);
+  const auto steps = macrostructure.empty() && !cut ? std::nullopt : cells.lattice();
   if (!steps || cells.shape_varies()) return {};
   const auto first = first_cell(cells, context.sink);
   if (!first) return {};
@@ -201,22 +236,58 @@ std::optional<LatticePart> lattice_part(const Solids& macrostructure, const eval
   Solids in_cell_frame;
   for (const TopoDS_Shape& solid : macrostructure)
     in_cell_frame.push_back(mapped(solid, inverse(lattice->world_from_cell)));
+  if (macrostructure.empty()) in_cell_frame.push_back(all_boxes(*lattice));
   const auto planes = face_planes(in_cell_frame, *lattice);
   if (!planes) return {};
-  const auto cell = repeated_cell(first->shape, lattice->box, context);
+  auto cell = repeated_cell(first->shape, lattice->box, context);
   if (!cell) return {};
-  const auto blocks = std::make_shared<const Blocks>(in_cell_frame, *lattice, *planes);
-  if (blocks->kept() == 0) return LatticePart{};
-  const LatticeSet set{.min = {0, 0, 0},
-                       .max = {lattice->count[0] - 1, lattice->count[1] - 1, lattice->count[2] - 1},
-                       .inside = [blocks](Index3 index) { return blocks->inside(index); }};
-  auto body = lattice_body(*cell, set, {.mesh = mesh}, context.sink);
-  if (!body) return {};
-  for (Solid& solid : body->solids) {
-    solid.outer.placement = lattice->world_from_cell * solid.outer.placement;
-    for (Shell& hollow : solid.voids) hollow.placement = lattice->world_from_cell * hollow.placement;
+  cell->cut_to_box = cut;
+  return Found{*lattice, std::move(*cell), std::make_shared<const Blocks>(in_cell_frame, *lattice, *planes)};
+}
+
+void place(Body& body, const Affine& world_from_body) {
+  for (Solid& solid : body.solids) {
+    solid.outer.placement = world_from_body * solid.outer.placement;
+    for (Shell& hollow : solid.voids) hollow.placement = world_from_body * hollow.placement;
   }
-  return LatticePart{std::move(*body), blocks->kept()};
+}
+
+}  // namespace
+
+std::optional<LatticePart> lattice_part(const Solids& macrostructure, const eval::CellStream& cells,
+                                        const std::optional<MeshFineness>& mesh, const SolidContext& context) {
+  const auto found = find_aligned(macrostructure, cells, context);
+  if (!found) return {};
+  if (found->blocks->kept() == 0) return LatticePart{};
+  const auto& count = found->lattice.count;
+  const LatticeSet set{.min = {0, 0, 0},
+                       .max = {count[0] - 1, count[1] - 1, count[2] - 1},
+                       .inside = [blocks = found->blocks](Index3 index) { return blocks->inside(index); }};
+  auto body = lattice_body(found->cell, set, {.mesh = mesh}, context.sink);
+  if (!body) return {};
+  place(*body, found->lattice.world_from_cell);
+  return LatticePart{std::move(*body), found->blocks->kept()};
+}
+
+std::optional<LatticeSample> lattice_sample(const Solids& macrostructure, const eval::CellStream& cells,
+                                            const std::optional<MeshFineness>& mesh, const SolidContext& context) {
+  const auto found = find_aligned(macrostructure, cells, context);
+  if (!found) return {};
+  LatticeSample out{{}, found->blocks->kept()};
+  if (out.kept == 0) return out;
+  // A block of n^3 cells has 6 n^2 walls: 8 a + 64 b = kept, 24 a + 96 b = walls.
+  const auto kept = static_cast<double>(out.kept), walls = static_cast<double>(found->blocks->walls());
+  const double of_large = (3 * kept - walls) / 96, of_small = kept / 8 - 8 * of_large;
+  for (const auto& [edge, weight] : {std::pair{2, of_small}, std::pair{4, of_large}}) {
+    const LatticeSet set{.min = {-1, -1, -1}, .max = {edge, edge, edge}, .inside = [n = edge](Index3 i) {
+                           return std::ranges::all_of(i, [n](std::int32_t k) { return k >= 0 && k < n; });
+                         }};
+    auto body = lattice_body(found->cell, set, {.mesh = mesh}, context.sink);
+    if (!body) return {};
+    place(*body, found->lattice.world_from_cell);
+    out.bodies.push_back({std::move(*body), weight});
+  }
+  return out;
 }
 
 }  // namespace meso::brep

@@ -5,6 +5,7 @@
 
 #include <optional>
 
+#include "meso/brep/body_sample.hpp"
 #include "meso/brep/lattice_body.hpp"
 #include "meso/eval/evaluation.hpp"
 #include "solid_context.hpp"
@@ -16,10 +17,20 @@ struct LatticePart {
   std::uint64_t kept = 0;
 };
 
-/// Macrostructure n union of the cells, if the case is the aligned one; else nothing, and no error in the sink. Errors
+/// Macrostructure n union of the cells, or without a macrostructure the union of cells that are cut to their boxes, if
+/// the case is the aligned one; else nothing, and no error in the sink. Errors
 /// of evaluation are reported. May throw Standard_Failure.
 [[nodiscard]] std::optional<LatticePart> lattice_part(const Solids& macrostructure, const eval::CellStream& cells,
                                                       const std::optional<MeshFineness>& mesh,
                                                       const SolidContext& context);
+
+/// The same lattice as two small blocks of whole cells, weighted so that cells and walls on the surface add up.
+struct LatticeSample {
+  std::vector<WeightedBody> bodies;
+  std::uint64_t kept = 0;
+};
+[[nodiscard]] std::optional<LatticeSample> lattice_sample(const Solids& macrostructure, const eval::CellStream& cells,
+                                                          const std::optional<MeshFineness>& mesh,
+                                                          const SolidContext& context);
 
 }  // namespace meso::brep

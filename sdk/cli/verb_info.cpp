@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <CLI/CLI.hpp>
+#include <limits>
 
 #include "run.hpp"
 #ifdef MESO_CLI_EVAL
@@ -97,6 +98,9 @@ int info_verb(Run& run, const InfoArguments& arguments) {
 #ifdef MESO_CLI_EVAL
   RunOptions options;
   options.max_cells = run.flags.max_cells;
+#ifdef MESO_CLI_BREP
+  if (arguments.estimate) options.max_cells = std::numeric_limits<std::uint64_t>::max();  // nothing is built
+#endif
   if (!add_values(report, *checked, options, run)) return run.finish();
 #endif
   if (!run.flags.json) print_json_as_text(report, 0);

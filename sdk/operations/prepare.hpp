@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// From a document's file to what the engine starts with: evaluated, and how fine its triangles shall be. Private.
+
+#include "meso/operations/convert.hpp"
+
+namespace meso::operations {
+
+struct Prepared {
+  eval::Evaluation evaluation;
+  brep::RealiseOptions realise;
+  std::string part_id;  ///< empty: the document's build
+  Seconds seconds;      ///< read and evaluate
+
+  [[nodiscard]] std::optional<std::string_view> part() const {
+    return part_id.empty() ? std::nullopt : std::optional<std::string_view>(part_id);
+  }
+};
+
+[[nodiscard]] std::optional<Prepared> prepare(const std::filesystem::path& document, const MakeOptions& options,
+                                              DiagnosticSink& sink);
+
+}  // namespace meso::operations
