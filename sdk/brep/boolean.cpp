@@ -7,10 +7,12 @@
 #include <TopTools_IndexedDataMapOfShapeListOfShape.hxx>
 #include <algorithm>
 #include <array>
+#include <deque>
 #include <string_view>
 
 #include "face_moments.hpp"
 #include "meso/base/number.hpp"
+#include "point_within.hpp"
 
 namespace meso::brep {
 namespace {
@@ -79,13 +81,43 @@ class Pieces {
     for (const TopoDS_Shape& image : images) {
       const TopoDS_Shape* same = operation.ShapesSD().Seek(image);
       const int index = pieces_.Add(same != nullptr ? *same : image);
-      if (static_cast<std::size_t>(index) > owners_.size()) owners_.push_back({0, 0, std::fabs(volume_of(image))});
+      if (static_cast<std::size_t>(index) > owners_.size()) owners_.push_back({0, 0, std::fabs(volume_of(image)), {}});
       Owners& owners = owners_[static_cast<std::size_t>(index) - 1];
       (is_tool ? owners.tools : owners.objects) += 1;
+      owners.arguments.push_back(arguments_.size());
       sum += owners.volume;
     }
+    arguments_.push_back(argument);
     const double whole = volume_of(argument);
     return std::fabs(sum - whole) <= volume_tolerance * whole;
+  }
+
+  /// Whether pieces lie in exactly the arguments they came from. They do not where bodies that almost coincide were not
+  /// split along each other: two pieces then fill the same space, and every sum still holds.
+  [[nodiscard]] bool overlap() const {
+    std::vector<Bnd_Box> boxes;
+    std::deque<BRepClass3d_SolidClassifier> classifiers;  // they cannot be moved
+    for (const TopoDS_Shape& argument : arguments_) {
+      BRepBndLib::Add(argument, boxes.emplace_back());
+      classifiers.emplace_back(argument);
+    }
+    // A classification can fail by chance: it takes two points to convict.
+    const auto is_owner = [&](const Owners& piece, std::size_t a) {
+      return std::ranges::count(piece.arguments, a) > 0;
+    };
+    for (std::size_t i = 0; i < owners_.size(); ++i) {
+      const Owners& piece = owners_[i];
+      const std::vector<Vec3> points = points_within(pieces_(static_cast<int>(i) + 1), 2);
+      for (std::size_t a = 0; a < arguments_.size() && points.size() == 2; ++a) {
+        const bool contradicted = std::ranges::all_of(points, [&](Vec3 p) {
+          if (boxes[a].IsOut(to_pnt(p))) return is_owner(piece, a);
+          classifiers[a].Perform(to_pnt(p), Precision::Confusion());
+          return classifiers[a].State() == (is_owner(piece, a) ? TopAbs_OUT : TopAbs_IN);
+        });
+        if (contradicted) return true;
+      }
+    }
+    return false;
   }
 
   [[nodiscard]] double expected(BOPAlgo_Operation operation) const {
@@ -108,7 +140,9 @@ class Pieces {
   struct Owners {
     int objects, tools;
     double volume;
+    std::vector<std::size_t> arguments;
   };
+  std::vector<TopoDS_Shape> arguments_;
   TopTools_IndexedMapOfShape pieces_;
   std::vector<Owners> owners_;
 };
@@ -133,7 +167,10 @@ std::optional<std::string> fault_of(const BOPAlgo_BOP& operation, BOPAlgo_Operat
     volume += volume_of(solid);
   }
   const double expected = pieces.expected(kind);
-  if (std::fabs(volume - expected) <= volume_tolerance * pieces.total()) return {};
+  if (std::fabs(volume - expected) <= volume_tolerance * pieces.total()) {
+    if (pieces.overlap()) return "two of its pieces fill the same space";
+    return {};
+  }
   return "its volume is " + format_number(volume) + " mm3 where the pieces have " + format_number(expected) + " mm3";
 }
 

@@ -38,7 +38,9 @@ Place Boundary::place(const CellSolids& cells, const CellSolid& cell) const {
   if (mesh.points.empty()) return Place::outside;
   std::optional<Solids> body;
   for (const CarrierSurface& surface : surfaces_) {
-    if (!surface.box().intersects(box) || proven_side(surface, mesh, clear_distance) != 0) continue;
+    if (!surface.box().intersects(box)) continue;
+    // A face that the cell's body may enclose has the cell's surface on one side.
+    if (!contains(box, surface.box()) && proven_side(surface, mesh, clear_distance) != 0) continue;
     if (!body) {
       if (reaches_both_sides(mesh)) return Place::crossing;
       body = cells.solids_of(cell);

@@ -200,6 +200,7 @@ Reach reach_of(const CellShape& cell) {
     }
   };
   add_from({}, reach.own);
+  if (cell.cut_to_box) return reach;
   Index3 low{}, high{};  // shifts under which anything can reach the box
   for (std::size_t i = 0; i < 3; ++i) {
     low[i] = static_cast<std::int32_t>(std::ceil((cell.box.min[i] - all.max[i] + tolerance) / size[i]));

@@ -18,6 +18,7 @@ struct CellShape {
   Box3 box;
   std::vector<TopoDS_Shape> solids;
   std::vector<CellPrimitive> primitives;
+  bool cut_to_box = false;  ///< what sticks out is not there: nothing reaches into a neighbour
 
   [[nodiscard]] Vec3 size() const { return box.max - box.min; }
   /// Two points closer than this are one.

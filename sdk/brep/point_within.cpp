@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "point_within.hpp"
+
+#include <BOPTools_AlgoTools3D.hxx>
+#include <IntTools_Context.hxx>
+#include <optional>
+
+#include "face_moments.hpp"
+
+namespace meso::brep {
+namespace {
+
+constexpr std::size_t most_faces = 12;              ///< after that a solid is too thin
+constexpr double deepest = 0.1, shallowest = 1e-4;  ///< of the face's extent
+
+std::optional<Vec3> inward_normal(const TopoDS_Face& face, const gp_Pnt2d& at) {
+  const BRepAdaptor_Surface surface(face, false);
+  gp_Pnt point;
+  gp_Vec along_u, along_v;
+  surface.D1(at.X(), at.Y(), point, along_u, along_v);
+  const gp_Vec normal = along_u.Crossed(along_v);
+  if (normal.Magnitude() < 1e-12) return {};
+  const double side = face.Orientation() == TopAbs_REVERSED ? 1 : -1;
+  return side * to_vec(normal.Normalized().XYZ());
+}
+
+}  // namespace
+
+std::vector<Vec3> points_within(const TopoDS_Shape& solid, std::size_t count) {
+  std::vector<Vec3> points;
+  const Handle(IntTools_Context) context = new IntTools_Context;
+  BRepClass3d_SolidClassifier classifier(solid);
+  std::size_t tried = 0;
+  for (TopExp_Explorer it(solid, TopAbs_FACE); it.More() && points.size() < count && tried < most_faces; it.Next()) {
+    const TopoDS_Face& face = TopoDS::Face(it.Current());
+    gp_Pnt on_face;
+    gp_Pnt2d at;
+    ++tried;
+    if (BOPTools_AlgoTools3D::PointInFace(face, on_face, at, context) != 0) continue;
+    const std::optional<Vec3> inwards = inward_normal(face, at);
+    if (!inwards) continue;
+    const Box3 box = face_box(face);
+    for (double depth = deepest; depth >= shallowest; depth /= 10) {
+      const Vec3 p = to_vec(on_face) + depth * norm(box.max - box.min) * *inwards;
+      classifier.Perform(to_pnt(p), Precision::Confusion());
+      if (classifier.State() != TopAbs_IN) continue;
+      points.push_back(p);
+      break;
+    }
+  }
+  return points;
+}
+
+}  // namespace meso::brep
