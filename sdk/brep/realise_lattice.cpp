@@ -252,6 +252,37 @@ void place(Body& body, const Affine& world_from_body) {
   }
 }
 
+using IndexTest = bool (*)(Index3);
+
+/// The faces of some cells, where those share no edge with the others.
+Shell part_of(const Shell& shell, IndexTest takes) {
+  Shell out = shell;
+  out.visit = [all = shell.visit, takes](const std::function<void(const FaceInstance&)>& callback) {
+    all([&](const FaceInstance& face) {
+      if (takes(face.cell)) callback(face);
+    });
+  };
+  return out;
+}
+
+bool is_empty(const Shell& shell) {
+  bool empty = true;
+  shell.visit([&](const FaceInstance&) { empty = false; });
+  return empty;
+}
+
+Body part_of(const Body& body, IndexTest takes) {
+  Body out;
+  for (const Solid& solid : body.solids) {
+    Solid part{part_of(solid.outer, takes), {}};
+    if (is_empty(part.outer)) continue;
+    for (const Shell& hollow : solid.voids)
+      if (Shell taken = part_of(hollow, takes); !is_empty(taken)) part.voids.push_back(std::move(taken));
+    out.solids.push_back(std::move(part));
+  }
+  return out;
+}
+
 }  // namespace
 
 std::optional<LatticePart> lattice_part(const Solids& macrostructure, const eval::CellStream& cells,
@@ -278,15 +309,17 @@ std::optional<LatticeSample> lattice_sample(const Solids& macrostructure, const 
   // A block of n^3 cells has 6 n^2 walls: 8 a + 64 b = kept, 24 a + 96 b = walls.
   const auto kept = static_cast<double>(out.kept), walls = static_cast<double>(found->blocks->walls());
   const double of_large = (3 * kept - walls) / 96, of_small = kept / 8 - 8 * of_large;
-  for (const auto& [edge, weight] : {std::pair{2, of_small}, std::pair{4, of_large}}) {
-    const LatticeSet set{.min = {-1, -1, -1}, .max = {edge, edge, edge}, .inside = [n = edge](Index3 i) {
-                           return std::ranges::all_of(i, [n](std::int32_t k) { return k >= 0 && k < n; });
-                         }};
-    auto body = lattice_body(found->cell, set, {.mesh = mesh}, context.sink);
-    if (!body) return {};
-    place(*body, found->lattice.world_from_cell);
-    out.bodies.push_back({std::move(*body), weight});
-  }
+  // Both stand in one body, far enough apart to be told by the first index.
+  const LatticeSet set{.min = {-1, -1, -1}, .max = {8, 4, 4}, .inside = [](Index3 i) {
+                         const std::int32_t first = i[0] < 3 ? 0 : 4, edge = i[0] < 3 ? 2 : 4;
+                         return i[0] >= first && i[0] < first + edge && i[1] >= 0 && i[1] < edge && i[2] >= 0 &&
+                                i[2] < edge;
+                       }};
+  auto body = lattice_body(found->cell, set, {.mesh = mesh}, context.sink);
+  if (!body) return {};
+  place(*body, found->lattice.world_from_cell);
+  out.bodies.push_back({part_of(*body, [](Index3 i) { return i[0] < 3; }), of_small});
+  out.bodies.push_back({part_of(*body, [](Index3 i) { return i[0] >= 3; }), of_large});
   return out;
 }
 
