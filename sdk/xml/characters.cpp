@@ -125,6 +125,10 @@ bool is_name_character(char32_t c) {
 std::size_t name_length(std::string_view text, std::size_t at) {
   std::size_t i = at;
   while (i < text.size()) {
+    if (i > at && is_ascii_letter(static_cast<unsigned char>(text[i]))) {
+      ++i;
+      continue;
+    }
     const Decoded d = decode_utf8(text, i);
     if (d.length == 0 || !(i == at ? is_name_start(d.character) : is_name_character(d.character))) break;
     i += d.length;

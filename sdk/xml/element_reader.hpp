@@ -2,6 +2,7 @@
 #pragma once
 // The reader as a visitor of the describe table: fills an element from its scope.
 
+#include <algorithm>
 #include <string>
 #include <utility>
 
@@ -36,6 +37,7 @@ class ReadVisitor {
 
   template <class T>
   void children(std::string_view name, std::vector<T>& values) {
+    values.reserve(static_cast<std::size_t>(std::count_if(next_, scope_.children().end(), in_slot())));
     for (; here(); ++next_) {
       T& value = values.emplace_back();
       read_element(scope_.reading(), *next_, path(name, values.size()), value);
@@ -64,10 +66,16 @@ class ReadVisitor {
   void section(std::string_view name, Section<T>& section, std::string_view item);
 
  private:
+  [[nodiscard]] auto in_slot() const {
+    return [this](const Child& c) { return c.slot == slot_; };
+  }
   [[nodiscard]] bool here() const { return next_ != scope_.children().end() && next_->slot == slot_; }
   [[nodiscard]] std::string path(std::string_view name, std::size_t number = 0) const {
-    const std::string plain = scope_.path() + "/" + std::string(name);
-    return number == 0 ? plain : plain + "[" + std::to_string(number) + "]";
+    std::string out;
+    out.reserve(scope_.path().size() + name.size() + 24);
+    out.append(scope_.path()).append("/").append(name);
+    if (number != 0) out.append("[").append(std::to_string(number)).append("]");
+    return out;
   }
 
   template <class... Ts>

@@ -120,10 +120,12 @@ ElementScope::ElementScope(Reading& reading, const Node& node, const ElementShap
 }
 
 const ScannedAttribute* ElementScope::find_attribute(std::string_view name, pugi::xml_attribute& tree) const {
-  tree = node_.tree.first_attribute();
-  for (std::uint32_t i = 0; i < reading_.element(node_).attribute_count; ++i, tree = tree.next_attribute()) {
+  for (std::uint32_t i = 0; i < reading_.element(node_).attribute_count; ++i) {
     const ScannedAttribute& a = reading_.attribute(node_, i);
-    if (a.name.space == no_namespace && a.name.text == name) return &a;
+    if (a.name.space != no_namespace || a.name.text != name) continue;
+    tree = node_.tree.first_attribute();
+    for (std::uint32_t k = 0; k < i; ++k) tree = tree.next_attribute();
+    return &a;
   }
   return nullptr;
 }
@@ -133,20 +135,22 @@ void ElementScope::report_value(const ScannedAttribute& attribute, Code code, st
 }
 
 void ElementScope::check_attributes() {
-  std::vector<std::string_view> names;
-  for (const AttributeShape& a : shape_.attributes) names.push_back(a.name);
-  const std::string element(reading_.element(node_).name.local());
+  const std::string_view element = reading_.element(node_).name.local();
   for (std::uint32_t i = 0; i < reading_.element(node_).attribute_count && !reading_.full(); ++i) {
     const ScannedName& name = reading_.attribute(node_, i).name;
-    const bool known = name.space == no_namespace && std::find(names.begin(), names.end(), name.text) != names.end();
-    if (known || (name.space != no_namespace && name.space != format_namespace)) continue;
+    const auto& known = shape_.attributes;
+    if (name.space == no_namespace && std::ranges::find(known, name.text, &AttributeShape::name) != known.end())
+      continue;
+    if (name.space != no_namespace && name.space != format_namespace) continue;
+    std::vector<std::string_view> names;
+    for (const AttributeShape& a : known) names.push_back(a.name);
     reading_.report(Code::attribute_unknown, path_ + "/@" + named(name.text), name.text,
-                    {element, named(name.text), suggestion(name.text, names, "'", "'")});
+                    {named(element), named(name.text), suggestion(name.text, names, "'", "'")});
   }
   pugi::xml_attribute tree;
   for (const AttributeShape& a : shape_.attributes) {
     if (a.required && find_attribute(a.name, tree) == nullptr)
-      reading_.report_tag(Code::attribute_missing, path_, node_, {element, named(a.name)});
+      reading_.report_tag(Code::attribute_missing, path_, node_, {named(element), named(a.name)});
   }
 }
 
@@ -174,15 +178,15 @@ void ElementScope::collect_children() {
 
 void ElementScope::add_child(const Node& child, std::vector<Trivia>& pending) {
   const ScannedName& name = reading_.element(child).name;
-  const std::string parent(reading_.element(node_).name.local());
-  const std::string child_path = path_ + "/" + named(name.local());
+  const auto parent = [this] { return named(reading_.element(node_).name.local()); };
+  const auto child_path = [&] { return path_ + "/" + named(name.local()); };
   if (name.space == no_namespace) {
-    reading_.report_tag(Code::element_no_namespace, child_path, child, {named(name.text)});
+    reading_.report_tag(Code::element_no_namespace, child_path(), child, {named(name.text)});
     return;
   }
   if (name.space != format_namespace) {
     if (shape_.has_text)
-      reading_.report_tag(Code::foreign_in_text, child_path, child, {named(name.text), parent});
+      reading_.report_tag(Code::foreign_in_text, child_path(), child, {named(name.text), parent()});
     else
       pending.push_back({Trivia::Kind::foreign, reading_.foreign_text(child.scanned)});
     return;
@@ -193,13 +197,13 @@ void ElementScope::add_child(const Node& child, std::vector<Trivia>& pending) {
   const auto index = static_cast<std::size_t>(slot - shape_.slots.begin());
   const bool once = slot->kind == SlotKind::single || slot->kind == SlotKind::choice;
   if (once && filled_[index] && slot->alternatives.size() == 1)
-    reading_.report_tag(Code::element_repeated, child_path, child, {named(name.local()), parent});
+    reading_.report_tag(Code::element_repeated, child_path(), child, {named(name.local()), parent()});
   else if (once && filled_[index]) {
     std::string list;
     for (const Alternative& a : slot->alternatives) list += (list.empty() ? "<" : ", <") + named(a.name) + ">";
-    reading_.report_tag(Code::element_choice, child_path, child, {named(name.local()), parent, list});
+    reading_.report_tag(Code::element_choice, child_path(), child, {named(name.local()), parent(), list});
   } else if (index < current_slot_ && !shape_.any_order) {
-    reading_.report_tag(Code::element_order, child_path, child, {named(name.local()), named(current_name_)});
+    reading_.report_tag(Code::element_order, child_path(), child, {named(name.local()), named(current_name_)});
   }
   filled_[index] = true;
   if (index >= current_slot_) {

@@ -2,6 +2,7 @@
 #include "scan.hpp"
 
 #include <algorithm>
+#include <tuple>
 #include <utility>
 
 #include "characters.hpp"
@@ -88,12 +89,19 @@ class Scanner {
   std::size_t pos_ = 0;
   Scan out_;
   NamespaceScope scope_;
-  std::vector<std::uint32_t> open_;  ///< elements whose end tag is still to come
+  std::vector<const ScannedName*> names_;  ///< of one element, while they are compared
+  std::vector<std::uint32_t> open_;        ///< elements whose end tag is still to come
   ScanFault fault_;
 };
 
 bool Scanner::all() {
   if (!declaration()) return false;
+  // No more elements than '<' and no more attributes than '=': pages that stay unused cost nothing.
+  const auto bound = [&](char c) {
+    return std::min(static_cast<std::size_t>(std::count(text_.begin(), text_.end(), c)), limits_.max_nodes);
+  };
+  out_.elements.reserve(bound('<'));
+  out_.attributes.reserve(bound('='));
   while (!at_end()) {
     if (!(text_[pos_] == '<' ? markup() : characters())) return false;
   }
@@ -272,21 +280,21 @@ bool Scanner::attribute() {
   ScannedAttribute a;
   if (!name(a.name, "an attribute name, '>' or '/>'")) return false;
   skip_space();
-  const std::string what = "the attribute '" + std::string(a.name.text) + "'";
-  if (at_end()) return fail_cut(what, first);
-  if (!at("=")) return fail_syntax("'=' behind " + what);
+  const auto what = [&] { return "the attribute '" + std::string(a.name.text) + "'"; };
+  if (at_end()) return fail_cut(what(), first);
+  if (!at("=")) return fail_syntax("'=' behind " + what());
   ++pos_;
   skip_space();
-  if (at_end()) return fail_cut(what, first);
+  if (at_end()) return fail_cut(what(), first);
   const char quote = text_[pos_];
-  if (quote != '"' && quote != '\'') return fail_syntax("a quoted value of " + what);
+  if (quote != '"' && quote != '\'') return fail_syntax("a quoted value of " + what());
   ++pos_;
   const std::size_t close = text_.find(quote, pos_);
   const std::size_t end = std::min(close, text_.size());
   const std::size_t less = text_.substr(pos_, end - pos_).find('<');
   if (less != npos) return fail(Code::xml_less_than_in_attribute, pos_ + less, 1, {std::string(a.name.text)});
   if (!references(pos_, end)) return false;
-  if (close == npos) return fail_cut("the value of " + what, first);
+  if (close == npos) return fail_cut("the value of " + what(), first);
   a.value = text_.substr(pos_, close - pos_);
   out_.attributes.push_back(a);
   pos_ = close + 1;
@@ -388,10 +396,13 @@ bool Scanner::resolve(ScannedName& name, bool uses_default) {
 
 bool Scanner::distinct_attributes(const ScannedElement& e) {
   if (e.attribute_count < 2) return true;
-  std::vector<const ScannedName*> names;
+  std::vector<const ScannedName*>& names = names_;
+  names.clear();
   for (std::uint32_t i = 0; i < e.attribute_count; ++i) names.push_back(&out_.attributes[e.first_attribute + i].name);
   const auto key = [](const ScannedName* n) { return std::pair(n->space, n->local()); };
-  std::stable_sort(names.begin(), names.end(), [&](auto* a, auto* b) { return key(a) < key(b); });
+  // Equal names stay in the order of the file: their addresses are.
+  std::sort(names.begin(), names.end(),
+            [&](auto* a, auto* b) { return std::tuple(key(a), a) < std::tuple(key(b), b); });
   const auto same = std::adjacent_find(names.begin(), names.end(), [&](auto* a, auto* b) { return key(a) == key(b); });
   if (same == names.end()) return true;
   const std::string_view second = same[1]->text;
