@@ -9,7 +9,7 @@
 // Aligned lattices are two small blocks, whose counts follow the numbers of cells and of walls on the surface exactly.
 // Everything else is the macrostructure and a few whole cells: what touches or is cut is counted as if it were not, so
 // general booleans come out too large. Weights may be negative. Cells beyond a thousand are sampled evenly, at ordinals
-// that depend on nothing but their number. Cost: below two seconds whatever the number of cells. Errors as
+// that depend on nothing but their number. Cost: that of building a few cells, whatever their number. Errors as
 // realise_build.
 
 #include <optional>
