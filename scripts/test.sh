@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # Installs what is missing, builds, and tests: everything (dev), then reading, writing and validating alone (core-only).
 #
-# usage: test.sh [--all]     --all: also sanitizers, clang-tidy, formatting, desktop programs, fuzzing, benchmarks
+# usage: test.sh [--all]     --all: also sanitizers, clang-tidy, desktop programs, fuzzing, benchmarks
 #
 # Goes on after a failure, so that one run tells all; the last line is the summary, and the exit status is its verdict.
 set -uo pipefail
@@ -19,12 +19,13 @@ esac
 export CCACHE_BASEDIR=$PWD CCACHE_NOHASHDIR=1
 export CTEST_PARALLEL_LEVEL=${CTEST_PARALLEL_LEVEL:-$(nproc)}
 
-passed=() failed=()
+passed=() failed=() times=() closing=() failed_tests=()
 step() {  # step NAME COMMAND...: runs it, remembers how it went
   local name=$1 begin=$SECONDS
   shift
   printf '\n== %s\n' "$name"
   if "$@"; then passed+=("$name"); else failed+=("$name"); fi
+  times+=("$name $((SECONDS - begin)) s")
   printf '== %s: %d s\n' "$name" $((SECONDS - begin))
 }
 build() {  # build PRESET [cmake arguments]
@@ -35,7 +36,15 @@ build() {  # build PRESET [cmake arguments]
 build_and_test() {  # build_and_test PRESET [ctest arguments]
   local preset=$1
   shift
-  build "$preset" && ctest --preset "$preset" --no-tests=error "$@"
+  local result=0 begin=$SECONDS
+  build "$preset" || return
+  printf -- '-- %s built: %d s\n' "$preset" $((SECONDS - begin))
+  # ctest's closing lines come again at the end, where they are looked for.
+  ctest --preset "$preset" --no-tests=error "$@" 2>&1 | tee "build/$preset/ctest.log"
+  result=${PIPESTATUS[0]}
+  closing+=("$preset: $(grep 'tests passed' "build/$preset/ctest.log")")
+  failed_tests+=("$(sed -n '/^The following tests FAILED/,$p' "build/$preset/ctest.log")")
+  return "$result"
 }
 
 if $all; then step packages ./scripts/install-deps.sh --all; else step packages ./scripts/install-deps.sh; fi
@@ -43,9 +52,10 @@ if $all; then step packages ./scripts/install-deps.sh --all; else step packages 
 step dev build_and_test dev -LE 'desktop|fuzz'
 step core-only build_and_test core-only -LE 'desktop|fuzz'
 step dependencies ./scripts/check_dependencies.py build/dev/bin/meso
+step diagnostics-page diff docs/diagnostics.md <(./scripts/generate_diagnostics.py md)
+if command -v clang-format-14 > /dev/null; then step format ./scripts/check_format.sh; fi
 
 if $all; then
-  step format ./scripts/check_format.sh
   step desktop ctest --preset dev -L 'desktop|fuzz'
   step asan build_and_test asan -LE 'desktop|fuzz'
   step tidy build tidy
@@ -55,6 +65,13 @@ if $all; then
   done
 fi
 
+printf '\n'
+for lines in "${failed_tests[@]}"; do
+  if [[ -n $lines ]]; then printf '%s\n' "$lines"; fi
+done
+for line in "${closing[@]}"; do printf '%s\n' "$line"; done
+printf '== times:'
+printf ' %s;' "${times[@]}"
 printf '\n== %d s; passed: %s' "$SECONDS" "${passed[*]-}"
 if ((${#failed[@]} > 0)); then
   printf '; FAILED: %s\n' "${failed[*]}"

@@ -4,6 +4,7 @@
 #include <fmt/core.h>
 
 #include <CLI/CLI.hpp>
+#include <cstdio>
 #include <new>
 
 #include "run.hpp"
@@ -58,5 +59,8 @@ int main(int argc, char** argv) {
     const int code = app.exit(e);
     return code == 0 ? 0 : 2;
   }
-  return run_verb(run);
+  const int code = run_verb(run);
+  if (std::fflush(stdout) == 0 || code != 0) return code;
+  fmt::print(stderr, "error WRITE_FAILED: cannot write to standard output\n");
+  return 7;
 }

@@ -72,7 +72,10 @@ void add_limit_flags(CLI::App& verb, Flags& flags) {
   verb.add_option("--jobs", flags.jobs, "Threads; 0 is one per core. Output bytes do not depend on it")->type_name("N");
   verb.add_option("--timeout", flags.timeout, "Give up after this many seconds")
       ->type_name("S")
-      ->check(CLI::PositiveNumber);
+      ->check([](const std::string& text) -> std::string {
+        const auto seconds = parse_number(text);
+        return seconds && *seconds > 0 && *seconds <= 1e9 ? "" : "'" + text + "' is not a number of seconds up to 1e9";
+      });
   verb.add_option("--max-memory", flags.max_memory, "Give up beyond this much memory, e.g. 2G")->type_name("SIZE");
   verb.add_option("--max-cells", flags.max_cells, "Refuse patterns with more cells (10000000)")->type_name("N");
   verb.add_option("--progress", flags.progress, "auto, bar, json or none")
@@ -101,6 +104,12 @@ RunOptions Run::options() {
   progress_.emplace(progress_style(flags.progress));
   out.progress = [this](std::string_view stage, double fraction) { progress_->show(stage, fraction); };
   return out;
+}
+
+void Run::refuse_without_effect(std::initializer_list<GivenFlag> all, const char* where_it_has_one) {
+  for (const GivenFlag& flag : all) {
+    if (flag.given) usage_error(std::string(flag.name) + " has an effect " + where_it_has_one + " only");
+  }
 }
 
 std::optional<CheckedDocument> Run::open(const std::string& file) {
@@ -177,11 +186,14 @@ std::optional<std::uint64_t> parse_size(std::string_view text) {
   if (!number || *number <= 0) return std::nullopt;
   const std::string_view suffix = digits == std::string_view::npos ? "" : text.substr(digits);
   static constexpr std::string_view prefixes = "KMGT";
-  if (suffix.empty() || suffix == "B") return static_cast<std::uint64_t>(*number);
+  if (suffix.empty() || suffix == "B") {
+    return *number < 9e18 ? std::optional(static_cast<std::uint64_t>(*number)) : std::nullopt;
+  }
   const std::size_t power = prefixes.find(suffix[0]);
   const std::string_view rest = suffix.substr(1);
   if (power == std::string_view::npos || (!rest.empty() && rest != "B" && rest != "iB")) return std::nullopt;
-  return static_cast<std::uint64_t>(std::ldexp(*number, static_cast<int>(10 * (power + 1))));
+  const double bytes = std::ldexp(*number, static_cast<int>(10 * (power + 1)));
+  return bytes < 9e18 ? std::optional(static_cast<std::uint64_t>(bytes)) : std::nullopt;
 }
 
 }  // namespace meso::cli

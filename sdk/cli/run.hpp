@@ -3,6 +3,7 @@
 // What every verb shares: its flags, the diagnostics it collects, and how it ends.
 
 #include <functional>
+#include <initializer_list>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -59,6 +60,12 @@ class Run {
     return flags.no_clobber ? ExistingFile::refuse : ExistingFile::replace;
   }
   void usage_error(std::string text) { sink.report({.code = Code::usage, .args = {std::move(text)}}); }
+  /// A flag that was given and changes nothing in this call is a usage error.
+  struct GivenFlag {
+    const char* name;
+    bool given;
+  };
+  void refuse_without_effect(std::initializer_list<GivenFlag> all, const char* where_it_has_one);
   [[nodiscard]] std::optional<CheckedDocument> open(const std::string& file);
   /// Prints what was collected to stderr and returns the exit code of the first error, else 0.
   int finish();

@@ -14,6 +14,8 @@ namespace meso::cli {
 namespace {
 
 int canonical(Run& run, const std::string& in, const std::string& out) {
+  if (out.empty()) run.refuse_without_effect({{"--no-clobber", run.flags.no_clobber}}, "with an output file");
+  if (run.sink.has_errors()) return run.finish();
   const auto read = read_document_file(in, run.sink);
   if (!read) return run.finish();
   const std::string bytes = canonical_document(read->document);

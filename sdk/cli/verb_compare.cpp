@@ -20,7 +20,7 @@ using operations::ComparisonRow;
 struct CompareArguments {
   std::vector<std::string> documents;
   std::string series;
-  std::string out = ".";
+  std::string out;
 };
 
 Json row_json(const ComparisonRow& r) {
@@ -76,6 +76,12 @@ bool write_text(const fs::path& file, const std::string& text, Run& run) {
   return out && out->write(text) && out->commit(run.sink);
 }
 
+/// A value as part of a file name: "60mm/6" names no folder.
+std::string in_file_name(std::string value) {
+  for (std::size_t at = 0; (at = value.find('/', at)) != std::string::npos;) value.replace(at, 1, "%2F");
+  return value;
+}
+
 /// Each variant becomes a document of its own beside the files it refers to, so that its size is that of a real
 /// document.
 std::optional<std::vector<fs::path>> write_variants(const fs::path& document, const Series& series,
@@ -84,7 +90,7 @@ std::optional<std::vector<fs::path>> write_variants(const fs::path& document, co
   for (const std::string& value : series.values) {
     const auto text = operations::document_with_parameter(document, series.id, value, run.sink);
     if (!text) return std::nullopt;
-    files.push_back(folder / fmt::format("{}-{}-{}.meso", document.stem().string(), series.id, value));
+    files.push_back(folder / fmt::format("{}-{}-{}.meso", document.stem().string(), series.id, in_file_name(value)));
     if (!write_text(files.back(), *text, run)) return std::nullopt;
   }
   return files;
@@ -99,6 +105,10 @@ bool copy_references(const fs::path& document, const fs::path& folder, Run& run)
     std::error_code error;
     fs::create_directories(target.parent_path(), error);
     if (fs::equivalent(file, target, error)) continue;
+    if (run.flags.no_clobber && fs::exists(target)) {
+      run.sink.report({.code = Code::write_exists, .args = {target.string()}});
+      return false;
+    }
     if (!fs::copy_file(file, target, fs::copy_options::overwrite_existing, error)) {
       run.sink.report({.code = Code::write_failed, .args = {target.string(), error.message()}});
       return false;
@@ -133,18 +143,24 @@ bool write_plots(const std::vector<ComparisonRow>& rows, const std::string& stem
 }
 
 int compare_verb(Run& run, const CompareArguments& arguments) {
+  if (arguments.series.empty()) {
+    run.refuse_without_effect({{"--out", !arguments.out.empty()}, {"--no-clobber", run.flags.no_clobber}},
+                              "with --series");
+  }
   const auto options = make_options(run);
+  if (!options) return run.finish();
+  const fs::path folder = arguments.out.empty() ? "." : arguments.out;
   std::vector<fs::path> files(arguments.documents.begin(), arguments.documents.end());
   std::string stem;
-  if (options && !arguments.series.empty()) {
+  if (!arguments.series.empty()) {
     const auto series = parse_series(arguments.series, run);
     if (series && files.size() != 1) run.usage_error("--series takes exactly one document");
     if (run.sink.has_errors()) return run.finish();
     stem = files[0].stem().string() + "-" + series->id;
     std::error_code error;
-    fs::create_directories(arguments.out, error);
-    if (!copy_references(files[0], arguments.out, run)) return run.finish();
-    const auto variants = write_variants(files[0], *series, arguments.out, run);
+    fs::create_directories(folder, error);
+    if (!copy_references(files[0], folder, run)) return run.finish();
+    const auto variants = write_variants(files[0], *series, folder, run);
     if (!variants) return run.finish();
     files = *variants;
   }
@@ -153,7 +169,7 @@ int compare_verb(Run& run, const CompareArguments& arguments) {
     if (run.sink.has_errors()) break;
     if (auto row = operations::compare(file, *options, run.sink)) rows.push_back(std::move(*row));
   }
-  if (!run.sink.has_errors() && !stem.empty()) (void)write_plots(rows, stem, arguments.out, run);
+  if (!run.sink.has_errors() && !stem.empty()) (void)write_plots(rows, stem, folder, run);
   if (run.flags.json) {
     Json list = Json::array();
     for (const ComparisonRow& row : rows) list.push_back(row_json(row));
@@ -173,7 +189,7 @@ void add_compare(CLI::App& app, Run& run) {
   verb->add_option("--series", arguments.series,
                    "One row per value of a parameter; writes the variants and two plots (SVG)")
       ->type_name("ID=V,V,...");
-  verb->add_option("--out", arguments.out, "Folder for the variants and plots of --series")->type_name("DIR");
+  verb->add_option("--out", arguments.out, "Folder for the variants and plots of --series (.)")->type_name("DIR");
   add_mesh_flags(*verb, run.flags);
   add_limit_flags(*verb, run.flags);
   add_json_flag(*verb, run.flags);

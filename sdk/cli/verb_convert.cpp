@@ -49,11 +49,15 @@ Json report_json(const operations::ConvertReport& r, const std::string& in, cons
 }
 
 int convert_verb(Run& run, const std::string& in, const std::string& out, bool ascii) {
+  if (operations::output_needs_mesh(out) == false) {
+    run.refuse_without_effect({{"--deflection", !run.flags.deflection.empty()}, {"--angle", !run.flags.angle.empty()}},
+                              "for .stl");
+  }
   const auto options = make_options(run);
   if (!options) return run.finish();
   clean_on_stop(out);
-  const auto report =
-      operations::convert(in, out, *options, {.ascii = ascii, .no_clobber = run.flags.no_clobber}, run.sink);
+  const auto report = operations::convert(
+      in, out, *options, {.ascii = ascii, .no_clobber = run.flags.no_clobber, .run = options->run}, run.sink);
   if (!report) return run.finish(Json{{"input", in}, {"output", out}});
   const int code = run.finish(report_json(*report, in, out));
   if (!run.flags.json) print_summary(*report, out);

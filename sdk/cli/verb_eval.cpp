@@ -138,7 +138,12 @@ const Pattern* choose_pattern(const eval::Evaluation& evaluation, const std::str
 }
 
 int eval_verb(Run& run, const std::string& in, const std::string& out_path, const std::string& pattern_id) {
+  if (out_path.empty()) run.refuse_without_effect({{"--no-clobber", run.flags.no_clobber}}, "with an output file");
+  if (out_path.ends_with(".csv")) run.refuse_without_effect({{"--json", run.flags.json}}, "without a .csv file");
+  if (!out_path.empty() && !out_path.ends_with(".csv") && !out_path.ends_with(".json"))
+    run.usage_error("'" + out_path + "': eval writes .csv and .json");
   const RunOptions options = run.options();
+  if (run.sink.has_errors()) return run.finish();
   const auto checked = run.open(in);
   if (!checked) return run.finish();
   eval::EvaluateOptions evaluate{.run = options};
@@ -150,10 +155,6 @@ int eval_verb(Run& run, const std::string& in, const std::string& out_path, cons
   const auto cells = evaluation->cells(*pattern, run.sink);
   if (!cells) return run.finish();
   const bool json = run.flags.json || out_path.ends_with(".json");
-  if (!json && !out_path.empty() && !out_path.ends_with(".csv")) {
-    run.usage_error("'" + out_path + "': eval writes .csv and .json");
-    return run.finish();
-  }
   auto out = TextOutput::open(out_path, run);
   if (out && (json ? write_json(*cells, *out, run.sink) : write_csv(*cells, *out, run.sink)))
     (void)out->commit(run.sink);

@@ -62,9 +62,8 @@ bool add_values(Json& report, const CheckedDocument& checked, const RunOptions& 
 #endif
 
 #ifdef MESO_CLI_BREP
-bool add_estimate(Json& report, const std::string& file, Run& run) {
-  const auto options = make_options(run);
-  const auto estimate = options ? operations::estimate(file, *options, run.sink) : std::nullopt;
+bool add_estimate(Json& report, const std::string& file, const operations::MakeOptions& options, Run& run) {
+  const auto estimate = operations::estimate(file, options, run.sink);
   if (!estimate) return false;
   report["estimate"] = {
       {"placed", estimate->placed},
@@ -89,18 +88,27 @@ void print_json_as_text(const Json& value, int indent) {
 }
 
 int info_verb(Run& run, const InfoArguments& arguments) {
+#ifdef MESO_CLI_BREP
+  if (!arguments.estimate) {
+    run.refuse_without_effect({{"--part", !run.flags.part.empty()},
+                               {"--deflection", !run.flags.deflection.empty()},
+                               {"--angle", !run.flags.angle.empty()}},
+                              "with --estimate");
+  }
+  const auto make = make_options(run);
+  if (!make) return run.finish();
+#endif
   const auto checked = run.open(arguments.file);
   if (!checked) return run.finish();
   Json report = contents(checked->document());
 #ifdef MESO_CLI_BREP
-  if (arguments.estimate && !add_estimate(report, arguments.file, run)) return run.finish();
+  if (arguments.estimate && !add_estimate(report, arguments.file, *make, run)) return run.finish();
+  RunOptions options = make->run;
+  if (arguments.estimate) options.max_cells = std::numeric_limits<std::uint64_t>::max();  // nothing is built
+#elif defined(MESO_CLI_EVAL)
+  const RunOptions options = run.options();
 #endif
 #ifdef MESO_CLI_EVAL
-  RunOptions options;
-  options.max_cells = run.flags.max_cells;
-#ifdef MESO_CLI_BREP
-  if (arguments.estimate) options.max_cells = std::numeric_limits<std::uint64_t>::max();  // nothing is built
-#endif
   if (!add_values(report, *checked, options, run)) return run.finish();
 #endif
   if (!run.flags.json) print_json_as_text(report, 0);

@@ -26,6 +26,9 @@ std::optional<picture::Cut> parse_cut(const std::string& text, Run& run) {
 int render_verb(Run& run, const std::string& in, const std::string& out, const std::string& cut,
                 picture::RenderOptions look) {
   if (!out.ends_with(".png")) run.usage_error("'" + out + "': render writes .png");
+  if (!operations::is_document(in)) {
+    run.refuse_without_effect({{"--set", !run.flags.set.empty()}, {"--part", !run.flags.part.empty()}}, "on documents");
+  }
   if (!cut.empty()) look.cut = parse_cut(cut, run);
   const auto options = run.sink.has_errors() ? std::nullopt : make_options(run);
   if (!options) return run.finish();

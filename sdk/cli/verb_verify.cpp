@@ -15,6 +15,9 @@ Json check_json(const operations::Check& c) {
 }
 
 int verify_verb(Run& run, const std::string& file) {
+  if (!operations::is_document(file)) {
+    run.refuse_without_effect({{"--set", !run.flags.set.empty()}, {"--part", !run.flags.part.empty()}}, "on documents");
+  }
   const auto options = make_options(run);
   if (!options) return run.finish();
   const auto report = operations::verify(file, *options, run.sink);

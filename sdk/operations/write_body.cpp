@@ -47,7 +47,23 @@ std::optional<Written> write_format(Format format, const brep::Body& body, const
   return std::nullopt;
 }
 
+/// Stops a writer when the user or the clock does.
+class StoppableSink final : public ByteSink {
+ public:
+  StoppableSink(ByteSink& out, const RunOptions& run) : out_(out), run_(run) {}
+  [[nodiscard]] bool write(std::string_view bytes) override { return !run_.should_stop() && out_.write(bytes); }
+
+ private:
+  ByteSink& out_;
+  const RunOptions& run_;
+};
+
 }  // namespace
+
+bool is_document(const std::filesystem::path& file) {
+  const std::string extension = lower_extension(file);
+  return extension != ".step" && extension != ".stp" && extension != ".stl";
+}
 
 std::optional<bool> output_needs_mesh(const std::filesystem::path& file) {
   const auto format = format_of(file);
@@ -64,7 +80,12 @@ std::optional<Written> write_body(const brep::Body& body, const std::filesystem:
   }
   auto out = OutputFile::create(file.string(), options.no_clobber ? ExistingFile::refuse : ExistingFile::replace, sink);
   if (!out) return std::nullopt;
-  auto written = write_format(*format, body, file.stem().string(), options.ascii, *out, sink);
+  StoppableSink stoppable(*out, options.run);
+  auto written = write_format(*format, body, file.stem().string(), options.ascii, stoppable, sink);
+  if (options.run.should_stop()) {
+    sink.report({.code = options.run.out_of_time() ? Code::limit_time : Code::cancelled});
+    return std::nullopt;
+  }
   return written && out->commit(sink) ? written : std::nullopt;
 }
 

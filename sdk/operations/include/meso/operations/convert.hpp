@@ -53,6 +53,7 @@ struct Made {
 struct WriteOptions {
   bool ascii = false;  ///< STL only
   bool no_clobber = false;
+  RunOptions run{};  ///< deadline and cancellation
 };
 struct Written {
   std::uint64_t bytes = 0;
@@ -60,6 +61,9 @@ struct Written {
 };
 [[nodiscard]] std::optional<Written> write_body(const brep::Body& body, const std::filesystem::path& file,
                                                 const WriteOptions& options, DiagnosticSink& sink);
+
+/// False for .step .stp .stl, which are geometry already.
+[[nodiscard]] bool is_document(const std::filesystem::path& file);
 
 /// True for the extensions that need triangles; empty for extensions nothing writes.
 [[nodiscard]] std::optional<bool> output_needs_mesh(const std::filesystem::path& file);

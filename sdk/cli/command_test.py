@@ -1,0 +1,321 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""The command from outside: flags, exit codes, files that appear whole or not at all, equal bytes.
+
+usage: command_test.py MESO [unittest arguments]     verbs that this build lacks are skipped
+"""
+import json
+import os
+import pathlib
+import re
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+MESO = str(pathlib.Path(sys.argv.pop(1)).resolve())
+VERBS = set(re.findall(r"^  ([a-z]+) ", subprocess.run([MESO, "--help"], capture_output=True, text=True,
+                                                        check=True).stdout.partition("Subcommands:")[2], re.M))
+BEAM = ROOT / "examples" / "ibeam" / "ibeam.meso"
+CONVERT_KEYS = """input output engine cells solids faces triangles volume area closed fragments bytes seconds
+                  peakBytes diagnostics way""".split()
+COMPARE_KEYS = """name cells macroStep partStep partStl framework packed vsStep vsStl triangles deflection angle
+                  seconds""".split()
+SECONDS = {"read", "evaluate", "realise", "write", "total"}
+
+DOCUMENT = """<meso xmlns="urn:meso-format:1.0" version="1.0" unit="millimeter"{attributes}>
+  <parameters><parameter id="n" value="3"/></parameters>
+  {macrostructures}
+  <unitCells><unitCell id="u"><parameter id="r" value="1"/><box dx="5" dy="5" dz="5"/>{body}</unitCell></unitCells>
+  <patterns><pattern id="p" unitCell="u"><loop index="i" axis="x" count="{count}" spacing="5"/>{instructions}</pattern></patterns>
+  <parts><part id="a"{part}><apply pattern="p" operation="union"/></part></parts>
+</meso>
+"""
+SPHERE = "<csg><sphere radius=\"r\"/></csg>"
+
+
+def document(body=SPHERE, count="n", instructions="", attributes="", macrostructures="", part=""):
+    return DOCUMENT.format(**locals())
+
+
+def needs(verb):
+    return unittest.skipUnless(verb in VERBS, f"this build has no {verb}")
+
+
+def flags_in_help(verb):
+    text = subprocess.run([MESO, verb, "--help"], capture_output=True, text=True, check=True).stdout
+    return set(re.findall(r"^\s+(?:-\w,)?(--[a-z-]+)", text, re.M)) - {"--help"}
+
+
+def flags_in_page():
+    """verb -> flags, from the table of docs/command.md."""
+    table, previous = {}, []
+    for line in (ROOT / "docs" / "command.md").read_text(encoding="utf-8").splitlines():
+        if not line.startswith("| `--"):
+            continue
+        cells = [cell.strip() for cell in line[1:-1].split("|")]
+        verbs = previous if cells[3] == "the same" else cells[3].split()
+        previous = verbs
+        for flag in re.findall(r"`(--[a-z-]+)", cells[0]):
+            for verb in verbs:
+                table.setdefault(verb, set()).add(flag)
+    return table
+
+
+class CommandTest(unittest.TestCase):
+    def setUp(self):
+        self.folder = pathlib.Path(tempfile.mkdtemp(prefix="meso_command_"))
+        self.addCleanup(shutil.rmtree, self.folder)
+
+    def file(self, name, text):
+        path = self.folder / name
+        path.write_bytes(text if isinstance(text, bytes) else text.encode())
+        return path
+
+    def out(self, name="out.step"):
+        """A path in a folder that holds nothing else."""
+        folder = self.folder / "out"
+        folder.mkdir(exist_ok=True)
+        return folder / name
+
+    def run_meso(self, *arguments, **options):
+        return subprocess.run([MESO, *map(str, arguments)], capture_output=True, timeout=120, **options)
+
+    def expect(self, code, *arguments, says="", **options):
+        done = self.run_meso(*arguments, **options)
+        told = done.stderr.decode(errors="replace")
+        self.assertEqual(done.returncode, code, f"meso {' '.join(map(str, arguments))}\n{told}")
+        self.assertIn(says, told)
+        return done
+
+    def assert_nothing_written(self):
+        self.assertEqual(list((self.folder / "out").iterdir()), [])
+
+
+class Flags(CommandTest):
+    @needs("render")
+    def test_help_offers_what_the_page_lists(self):
+        page = flags_in_page()
+        for verb in sorted(VERBS):
+            with self.subTest(verb=verb):
+                self.assertEqual(flags_in_help(verb), page.get(verb, set()))
+
+    def test_unknown_flags_verbs_and_missing_arguments(self):
+        self.expect(2)
+        self.expect(2, "fly")
+        for verb in VERBS:
+            self.expect(2, verb, "--no-such-flag", "x")
+            if verb != "formats":
+                self.expect(2, verb)
+        self.expect(2, "validate", "a.meso", "--set", "n=1")
+        self.expect(2, "formats", "--jobs", "1")
+        self.expect(0, "--version")
+        self.expect(0, "--help")
+
+    def test_flags_without_effect(self):
+        good = self.file("good.meso", document())
+        self.expect(2, "canonical", good, "--no-clobber", says="USAGE")
+
+    @needs("convert")
+    def test_flags_without_effect_where_geometry_is_made(self):
+        good = self.file("good.meso", document())
+        for arguments in (["convert", good, self.out(), "--ascii"], ["convert", good, self.out(), "--deflection", "1mm"],
+                          ["convert", good, self.out("a.brep"), "--angle", "1"], ["info", good, "--part", "a"],
+                          ["info", good, "--angle", "0.5"], ["compare", good, "--out", self.folder],
+                          ["compare", good, "--no-clobber"], ["eval", good, "--no-clobber"],
+                          ["eval", good, self.out("a.csv"), "--json"], ["verify", "a.stl", "--set", "n=1"]):
+            self.expect(2, *arguments, says="USAGE")
+        self.assert_nothing_written()
+
+    @needs("convert")
+    def test_values(self):
+        good = self.file("good.meso", document())
+        for flag in (["--set", "n"], ["--set", "=1"], ["--set", "n="], ["--set", "m=1"], ["--set", "n=1+"], ["--set", "n=1/0"],
+                     ["--engine", "magic"], ["--deflection", "-1mm"], ["--deflection", "0"], ["--deflection", "wide"],
+                     ["--angle", "1/0"], ["--jobs", "-1"], ["--jobs", "many"], ["--timeout", "0"], ["--timeout", "nan"],
+                     ["--max-memory", "2X"], ["--max-memory", "-1G"], ["--max-memory", "1e400"], ["--progress", "loud"],
+                     ["--part", "nobody"]):
+            with self.subTest(flag=flag):
+                self.expect(2, "convert", good, self.out("a.stl"), *flag)
+        for name in ("a", "a.txt", "a.step.gz"):
+            self.expect(2, "convert", good, self.out(name), says="USAGE")
+        self.assert_nothing_written()
+
+
+class ExitCodes(CommandTest):
+    def reading_verbs(self):
+        yield from (["validate"], ["info"], ["canonical"])
+        if "convert" in VERBS:
+            yield from (["eval"], ["verify"], ["compare"])
+
+    def test_files_that_cannot_be_read(self):
+        good = document()
+        bad = {"empty.meso": b"", "text.meso": b"hello", "cut.meso": good[:300].encode(), "binary.meso": bytes(range(256)) * 9,
+               "latin.meso": good.replace("id=\"a\"", "id=\"\xe4\"").encode("latin-1"), "null.meso": b"\0" * 1000}
+        files = [self.file(name, text) for name, text in bad.items()] + [self.folder, self.folder / "missing.meso"]
+        for verb in self.reading_verbs():
+            for file in files:
+                with self.subTest(verb=verb, file=file.name):
+                    self.expect(3, *verb, file, says="error")
+
+    def test_a_file_beyond_every_limit(self):
+        huge = self.folder / "huge.meso"
+        with open(huge, "wb") as file:
+            file.truncate(1 << 40)
+        began = time.monotonic()
+        self.expect(6, "validate", huge, says="FILE_TOO_LARGE")
+        self.assertLess(time.monotonic() - began, 5)
+
+    def test_valid(self):
+        done = self.expect(0, "validate", self.file("good.meso", document()), "--json")
+        self.assertEqual(json.loads(done.stdout)["verdict"], "valid")
+
+    def test_a_count_beyond_every_limit_is_valid(self):
+        self.expect(0, "validate", self.file("many.meso", document(count="10^12")))
+
+    def test_unknown_requires(self):
+        self.expect(4, "validate", self.file("a.meso", document(attributes=' requires="warp"')), says="REQUIRES_UNKNOWN")
+
+    def test_links_to_files(self):
+        def linked(href):
+            return document(macrostructures=f'<macrostructures><macrostructure id="m"><import href="{href}"/></macrostructure></macrostructures>',
+                            part=' macrostructure="m"')
+        self.expect(3, "validate", self.file("a.meso", linked("none.step")), says="HREF_NOT_FOUND")
+        for href in ("../x.step", "/etc/passwd", "a/../../x.step"):
+            self.expect(1, "validate", self.file("a.meso", linked(href)), says="HREF_OUTSIDE")
+
+    @needs("convert")
+    def test_imports_that_cannot_be_read(self):
+        text = (ROOT / "examples/ibeam/ibeam.step").read_bytes()
+        point = re.search(rb"CARTESIAN_POINT\('[^']*',\(([^,]+),", text)
+        broken = {"empty.step": b"", "garbage.step": bytes(range(256)) * 40, "cut.step": text[:len(text) // 2],
+                  "nan.step": text[:point.start(1)] + b"nan" + text[point.end(1):],
+                  "cut.stl": b"\0" * 80 + (1000).to_bytes(4, "little") + b"\0" * 500, "empty.stl": b""}
+        for name, content in broken.items():
+            self.file(name, content)
+            href = f'<import href="{name}"' + (' unit="millimeter"' if name.endswith("stl") else "") + "/>"
+            file = self.file("a.meso", document(
+                macrostructures=f'<macrostructures><macrostructure id="m">{href}</macrostructure></macrostructures>', part=' macrostructure="m"'))
+            with self.subTest(name=name):
+                done = self.run_meso("convert", file, self.out())
+                self.assertIn(done.returncode, (3, 5), done.stderr)
+                self.assertIn(b"error", done.stderr)
+                self.assert_nothing_written()
+                self.assertIn(self.run_meso("verify", self.folder / name).returncode, (1, 3, 5))
+
+    @needs("convert")
+    def test_what_stops_a_conversion(self):
+        for code, says, text in ((1, "EXPRESSION_DOMAIN", document(count="20", instructions='<set parameter="r" value="1 + 1/(17 - i)"/>')),
+                                 (4, "BREP_NOT_REALISED", document(body='<implicit field="hypot(x, hypot(y, z)) - r"/>')),
+                                 (6, "LIMIT_CELLS", document(count="10^12"))):
+            with self.subTest(says=says):
+                self.expect(code, "convert", self.file("a.meso", text), self.out(), says=says)
+                self.assert_nothing_written()
+        self.expect(4, "convert", self.file("a.meso", document()), self.out(), "--engine", "implicit", says="ENGINE_NOT_BUILT")
+        self.expect(6, "convert", self.file("a.meso", document()), self.out(), "--max-cells", "2", says="LIMIT_CELLS")
+        self.assert_nothing_written()
+
+    @needs("convert")
+    def test_limits_of_time_and_memory(self):
+        began = time.monotonic()
+        self.expect(6, "convert", BEAM, self.out(), "--set", "pitch=1mm", "--set", "strut=0.1mm", "--timeout", "0.5", says="LIMIT_TIME")
+        self.assertLess(time.monotonic() - began, 5)
+        self.expect(6, "convert", BEAM, self.out(), "--set", "pitch=1mm", "--set", "strut=0.1mm", "--max-memory", "64M", says="LIMIT_MEMORY")
+        self.assert_nothing_written()
+
+
+class Outputs(CommandTest):
+    def test_folders_and_full_disks(self):
+        good = self.file("good.meso", document())
+        (self.folder / "full.stl").symlink_to("/dev/full")
+        (self.folder / "full.meso").symlink_to("/dev/full")
+        self.expect(7, "canonical", good, self.folder / "none" / "out.meso", says="WRITE_FAILED")
+        self.expect(7, "canonical", good, self.folder / "full.meso", says="WRITE_FAILED")
+        with open("/dev/full", "wb") as full:
+            done = subprocess.run([MESO, "info", str(good)], stdout=full, stderr=subprocess.PIPE)
+            self.assertEqual(done.returncode, 7, done.stderr)
+        if "convert" in VERBS:
+            self.expect(7, "convert", good, self.folder / "none" / "out.step", says="WRITE_FAILED")
+            self.expect(7, "convert", good, self.folder / "full.stl", says="WRITE_FAILED")
+            self.expect(7, "eval", good, self.folder / "none" / "out.csv", says="WRITE_FAILED")
+
+    def test_no_clobber(self):
+        good, out = self.file("good.meso", document()), self.out("a.meso")
+        self.expect(0, "canonical", good, out, "--no-clobber")
+        out.write_text("mine")
+        self.expect(7, "canonical", good, out, "--no-clobber", says="WRITE_EXISTS")
+        self.assertEqual(out.read_text(), "mine")
+        self.expect(0, "canonical", good, out)
+        self.assertEqual(self.run_meso("canonical", out).stdout, out.read_bytes())
+
+    @needs("convert")
+    def test_a_failing_run_leaves_the_old_file(self):
+        out = self.out()
+        out.write_text("old")
+        self.expect(6, "convert", self.file("a.meso", document(count="10^12")), out)
+        self.assertEqual(out.read_text(), "old")
+        self.expect(0, "convert", self.file("b.meso", document()), out)
+        self.assertTrue(out.read_text().startswith("ISO-10303-21;"))
+        self.assertEqual([p.name for p in out.parent.iterdir()], ["out.step"])
+        self.expect(7, "convert", self.folder / "b.meso", out, "--no-clobber", says="WRITE_EXISTS")
+
+    @needs("convert")
+    def test_reports(self):
+        done = self.expect(0, "convert", BEAM, self.out(), "--set", "pitch=10mm", "--json")
+        report = json.loads(done.stdout)
+        self.assertEqual(sorted(report), sorted(CONVERT_KEYS))
+        self.assertEqual((report["cells"]["placed"], report["cells"]["kept"]), (600, 280))
+        self.assertEqual(set(report["cells"]), {"placed", "kept", "crossing"})
+        self.assertEqual(set(report["seconds"]), SECONDS)
+        self.assertEqual((report["solids"], report["closed"], report["diagnostics"]), (1, True, []))
+        self.assertEqual(report["bytes"], self.out().stat().st_size)
+        done = self.expect(0, "compare", self.file("good.meso", document()), "--json")
+        rows = json.loads(done.stdout)
+        self.assertEqual([sorted(row) for row in rows], [sorted(COMPARE_KEYS)])
+        self.assertEqual(set(rows[0]["seconds"]), SECONDS)
+        failed = self.expect(6, "convert", self.file("a.meso", document(count="10^12")), self.out("b.step"), "--json")
+        self.assertEqual(json.loads(failed.stdout)["diagnostics"][0]["code"], "LIMIT_CELLS")
+
+    @needs("convert")
+    def test_equal_bytes(self):
+        shutil.copy(BEAM.parent / "ibeam.step", self.folder)
+        beam = shutil.copy(BEAM, self.folder)
+        for name in ("a.step", "a.stl", "a.brep"):
+            variants = [["--jobs", "1"], ["--jobs", "2"], ["--jobs", "7"], ["--jobs", "7"]]
+            seen = set()
+            for number, flags in enumerate(variants):
+                locale = {**os.environ, "LC_ALL": ["C", "C.UTF-8", "de_DE.UTF-8", "tr_TR.UTF-8"][number]}
+                self.expect(0, "convert", beam, self.out(name), "--set", "pitch=10mm", *flags, env=locale)
+                seen.add(self.out(name).read_bytes())
+            with self.subTest(name=name):
+                self.assertEqual(len(seen), 1)
+
+    @needs("convert")
+    def test_stopped_by_the_user(self):
+        # Both while the body is made and while its file is written.
+        for number, wait_for_file in ((signal.SIGINT, False), (signal.SIGTERM, True)):
+            out = self.out("long.stl")
+            job = subprocess.Popen([MESO, "convert", str(BEAM), str(out), "--ascii", "--set", "pitch=2mm", "--set", "strut=0.4mm",
+                                    "--deflection", "0.002mm", "--angle", "0.1"], stderr=subprocess.PIPE)
+            began = time.monotonic()
+            while job.poll() is None and time.monotonic() - began < (60 if wait_for_file else 0.3):
+                if wait_for_file and any(out.parent.iterdir()):
+                    break
+                time.sleep(0.01)
+            self.assertIsNone(job.poll(), "the work ended too early to be stopped")
+            job.send_signal(number)
+            asked = time.monotonic()
+            told = job.communicate(timeout=30)[1]
+            with self.subTest(signal=number):
+                self.assertLess(time.monotonic() - asked, 2)
+                self.assertEqual(job.returncode, 130, told)
+                self.assertIn(b"CANCELLED", told)
+                self.assert_nothing_written()
+
+
+if __name__ == "__main__":
+    unittest.main()
