@@ -52,12 +52,13 @@ TopoDS_Shape read_step_shape(const path& file) {
 }
 
 std::optional<Solids> read_step(const path& file, ElementId where, const SolidContext& context) {
+  std::error_code error;
   std::ifstream stream(file, std::ios::binary);
-  const std::string text{std::istreambuf_iterator<char>(stream), {}};
-  if (!stream) {
+  if (!stream || !std::filesystem::is_regular_file(file, error)) {
     context.report(Code::import_unreadable, where, {file.string(), "it cannot be opened"});
     return {};
   }
+  const std::string text{std::istreambuf_iterator<char>(stream), {}};
   if (has_bad_number(text)) {
     context.report(Code::import_unreadable, where, {file.string(), "it has a number that is not finite"});
     return {};

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "meso/brep/read_step.hpp"
 
+#include "boolean.hpp"
 #include "import_solid.hpp"
 #include "shape_to_body.hpp"
 
@@ -15,9 +16,13 @@ std::optional<Body> read_step(const std::filesystem::path& file, const ReadStepO
   BRep_Builder builder;
   builder.MakeCompound(all);
   for (const TopoDS_Shape& solid : *solids) builder.Add(all, solid);
+  std::optional<double> deflection = options.deflection_mm;
+  if (options.relative_deflection) {
+    const Box3 box = box_of(all);
+    deflection = *options.relative_deflection * norm(box.max - box.min);
+  }
   ShapeToBodyOptions to_body;
-  if (options.deflection_mm)
-    to_body.mesh = MeshTolerance{.deflection_mm = *options.deflection_mm, .angle = options.angle_rad};
+  if (deflection) to_body.mesh = MeshTolerance{.deflection_mm = *deflection, .angle = options.angle_rad};
   return shape_to_body(all, to_body, sink);
 }
 

@@ -55,7 +55,7 @@ class PartFold {
       if (!clearance) return false;
       context.clearance = *clearance * millimeters_per(evaluation_.document().unit);
     }
-    const std::size_t solids_before = state.solids.size();
+    const Solids before = state.solids;
     std::optional<FoldStep> made;
     if (apply.pattern) {
       const Pattern* pattern = evaluation_.find_pattern(apply.pattern->text);
@@ -70,7 +70,7 @@ class PartFold {
     if (!made) return false;
     state.solids = std::move(made->solids);
     way = made->used_booleans ? "boolean" : "cells";
-    return settle_fragments(state.solids, solids_before, context, part.id.text, counts);
+    return settle_fragments(state.solids, before, context, part.id.text, counts);
   }
 
   bool try_lattice(Folded& state, const eval::CellStream& cells) {
@@ -79,6 +79,9 @@ class PartFold {
     if (!lattice) return false;
     counts.placed += cells.size();
     counts.kept += lattice->kept;
+    // Of a union nothing is loose that was not apart before; a cut body is one piece a solid at least.
+    const std::size_t solids = lattice->body.solids.size(), whole = state.solids.size();
+    lattice->body.fragments = whole == 0 || solids <= whole ? 0 : solids - whole;
     counts.fragments += lattice->body.fragments;
     state.body = std::move(lattice->body);
     way = "lattice";

@@ -48,7 +48,11 @@ Place Boundary::place(const CellSolids& cells, const CellSolid& cell) const {
     for (const TopoDS_Shape& solid : *body)
       if (exact_distance(solid, surface.face()) <= clear_distance) return Place::crossing;
   }
-  return solid_at(mesh.points.front()) >= 0 ? Place::inside : Place::outside;
+  // Clear of the boundary, each of the cell's solids is wholly on one side; they need not all be on the same.
+  const std::vector<Vec3> anchors = cells.anchors_of(cell);
+  const auto inside = std::ranges::count_if(anchors, [this](Vec3 p) { return solid_at(p) >= 0; });
+  if (inside == 0) return Place::outside;
+  return inside == std::ssize(anchors) ? Place::inside : Place::crossing;
 }
 
 bool Boundary::reaches_both_sides(const CoarseMesh& mesh) const {

@@ -150,6 +150,10 @@ class Collector {
       prototype.box.extend(surface.box().max);
     }
     prototype.mesh = coarse_mesh(prototype.solids);
+    for (const TopoDS_Shape& solid : prototype.solids) {
+      const CoarseMesh mesh = coarse_mesh({solid});
+      if (!mesh.points.empty()) prototype.anchors.push_back(mesh.points.front());
+    }
     const std::size_t index = result_.prototypes.size();
     result_.prototypes.push_back(std::move(prototype));
     known_.emplace(key, index);
@@ -187,6 +191,7 @@ class Neighbours {
 
  private:
   static bool decide(const Prototype& a, const Prototype& b, const Affine& a_from_b) {
+    if (holds_a_solid(a, b, a_from_b) || holds_a_solid(b, a, inverse(a_from_b))) return true;
     if (proven_apart(a.surfaces, a.mesh, b.mesh.placed(a_from_b))) return false;
     if (proven_apart(b.surfaces, b.mesh, a.mesh.placed(inverse(a_from_b)))) return false;
     if (proven_to_touch(a, b.mesh, a_from_b) || proven_to_touch(b, a.mesh, inverse(a_from_b))) return true;
@@ -194,6 +199,18 @@ class Neighbours {
       for (const TopoDS_Shape& other : b.solids)
         if (exact_distance(solid, mapped(other, a_from_b)) <= clear_distance) return true;
     return false;
+  }
+
+  /// A solid that lies within another keeps clear of its surface, and yet the two overlap.
+  static bool holds_a_solid(const Prototype& a, const Prototype& b, const Affine& a_from_b) {
+    return std::ranges::any_of(b.anchors, [&](Vec3 anchor) {
+      const Vec3 p = a_from_b * anchor;
+      if (!a.box.intersects({p, p})) return false;
+      return std::ranges::any_of(a.solids, [&](const TopoDS_Shape& solid) {
+        BRepClass3d_SolidClassifier classifier(solid, to_pnt(p), clear_distance);
+        return classifier.State() == TopAbs_IN;
+      });
+    });
   }
 
   /// A corner of the mesh, which lies on its body, is in or on the other: takes milliseconds, the distance a tenth of a
@@ -228,6 +245,12 @@ Solids CellSolids::solids_of(const CellSolid& cell) const {
 
 CoarseMesh CellSolids::mesh_of(const CellSolid& cell) const {
   return prototypes[cell.prototype].mesh.placed(cell.placement);
+}
+
+std::vector<Vec3> CellSolids::anchors_of(const CellSolid& cell) const {
+  std::vector<Vec3> placed = prototypes[cell.prototype].anchors;
+  for (Vec3& anchor : placed) anchor = cell.placement * anchor;
+  return placed;
 }
 
 std::optional<CellSolids> cell_solids(const eval::CellStream& cells, CellPart what, const SolidContext& context) {

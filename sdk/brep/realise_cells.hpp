@@ -15,6 +15,7 @@ struct Prototype {
   Solids solids;
   Box3 box;
   CoarseMesh mesh;
+  std::vector<Vec3> anchors;  ///< one point of each solid's surface
   std::vector<CarrierSurface> surfaces;
   bool is_simple = true;  ///< no solid has a void of its own
 };
@@ -31,6 +32,7 @@ struct CellSolids {
 
   [[nodiscard]] Solids solids_of(const CellSolid& cell) const;
   [[nodiscard]] CoarseMesh mesh_of(const CellSolid& cell) const;
+  [[nodiscard]] std::vector<Vec3> anchors_of(const CellSolid& cell) const;
 };
 
 /// Cell bodies, or the space the cells take up (their boxes). Empty with a diagnostic on any fault. May throw

@@ -5,6 +5,7 @@
 
 #include "boolean.hpp"
 #include "meso/base/number.hpp"
+#include "point_within.hpp"
 #include "realise_boundary.hpp"
 
 namespace meso::brep {
@@ -138,10 +139,13 @@ class CellStep {
     std::vector<std::vector<TopoDS_Shape>> voids(step.solids.size());
     const Boundary owners(step.solids);
     for (const std::size_t i : apart_inside_) {
-      const Vec3 point = cells_.mesh_of(cells_.cells[i]).points.front();
-      const int owner = step.solids.size() == 1 ? 0 : owners.solid_at(point);
-      if (owner < 0) continue;  // inside what another cutter has taken away: cannot be, the two would touch
-      append(voids[static_cast<std::size_t>(owner)], cells_.solids_of(cells_.cells[i]));
+      const Solids hollows = cells_.solids_of(cells_.cells[i]);
+      const std::vector<Vec3> anchors = cells_.anchors_of(cells_.cells[i]);
+      for (std::size_t k = 0; k < hollows.size(); ++k) {
+        const int owner = step.solids.size() == 1 ? 0 : owners.solid_at(anchors[k]);
+        if (owner >= 0) voids[static_cast<std::size_t>(owner)].push_back(hollows[k]);
+        // Otherwise it lies in what another cutter has taken away: cannot be, the two would touch.
+      }
     }
     for (std::size_t s = 0; s < step.solids.size(); ++s)
       if (!voids[s].empty()) step.solids[s] = with_voids(step.solids[s], voids[s]);
@@ -185,6 +189,16 @@ class CellStep {
   Solids joined_;                                          ///< the rest: touches the boundary or another cell
   std::uint64_t joined_kept_ = 0, crossing_ = 0;
 };
+
+/// For each piece the solid of `before` that it was cut from; -1 where that cannot be told.
+std::vector<int> owners_of(const Solids& pieces, const Solids& before) {
+  std::vector<int> owners(pieces.size(), before.size() == 1 ? 0 : -1);
+  if (before.size() <= 1) return owners;
+  const Boundary boundary(before);
+  for (std::size_t i = 0; i < pieces.size(); ++i)
+    for (const Vec3 p : points_within(pieces[i], 1)) owners[i] = boundary.solid_at(p);
+  return owners;
+}
 
 /// Which cells a boundary rule takes, judged by `judged` (bodies or boxes). Empty with a diagnostic on a fault.
 std::optional<std::vector<bool>> taken_cells(const Solids& body, const CellSolids& judged, const FoldContext& context) {
@@ -258,22 +272,38 @@ std::optional<FoldStep> apply_solids(const Solids& body, const Solids& operand, 
   return FoldStep{std::move(*solids), true};
 }
 
-bool settle_fragments(Solids& solids, std::size_t solids_before, const FoldContext& context, const std::string& part,
+bool settle_fragments(Solids& solids, const Solids& before, const FoldContext& context, const std::string& part,
                       CellCounts& counts) {
-  const ApplyOperation operation = context.apply.operation;
-  const std::size_t whole = operation == ApplyOperation::intersection ? 1 : solids_before;
-  const bool cuts =
-      operation != ApplyOperation::union_ && context.apply.boundary.value_or(BoundaryRule::clip) == BoundaryRule::clip;
-  if (!cuts || solids.size() <= whole) return true;
-  const std::size_t loose = solids.size() - whole;
+  const bool cuts = context.apply.operation != ApplyOperation::union_ &&
+                    context.apply.boundary.value_or(BoundaryRule::clip) == BoundaryRule::clip;
+  if (!cuts) return true;
+  // Largest first: the first piece of each solid is that solid, cut; the others are its fragments.
+  std::vector<std::pair<double, std::size_t>> order;
+  for (std::size_t i = 0; i < solids.size(); ++i) order.emplace_back(-brep::volume_of(solids[i]), i);
+  std::ranges::stable_sort(order, {}, [](const auto& piece) { return piece.first; });
+  const std::vector<int> owners = owners_of(solids, before);
+  std::vector<bool> seen(before.size() + 1, false), is_loose(solids.size(), false);
+  std::size_t loose = 0;
+  for (const auto& [volume, i] : order) {
+    const auto owner = static_cast<std::size_t>(owners[i] + 1);
+    if (seen[owner]) {
+      is_loose[i] = true;
+      ++loose;
+    }
+    seen[owner] = true;
+  }
+  if (loose == 0) return true;
   counts.fragments += loose;
   switch (context.apply.fragments.value_or(FragmentRule::keep)) {
     case FragmentRule::keep:
       return true;
-    case FragmentRule::drop:
-      std::ranges::stable_sort(solids, std::greater{}, [](const TopoDS_Shape& s) { return brep::volume_of(s); });
-      solids.resize(whole);
+    case FragmentRule::drop: {
+      Solids kept;
+      for (std::size_t i = 0; i < solids.size(); ++i)
+        if (!is_loose[i]) kept.push_back(solids[i]);
+      solids = std::move(kept);
       return true;
+    }
     case FragmentRule::error:
       break;
   }

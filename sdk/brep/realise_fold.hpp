@@ -32,7 +32,7 @@ struct FoldContext {
                                                    const FoldContext& context);
 
 /// Counts loose fragments and obeys the rule for them; false: the rule is `error`, reported.
-[[nodiscard]] bool settle_fragments(Solids& solids, std::size_t solids_before, const FoldContext& context,
+[[nodiscard]] bool settle_fragments(Solids& solids, const Solids& before, const FoldContext& context,
                                     const std::string& part, CellCounts& counts);
 
 }  // namespace meso::brep

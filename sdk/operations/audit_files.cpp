@@ -54,7 +54,8 @@ std::optional<VerifyReport> audit_stl(const std::filesystem::path& file, Diagnos
 }
 
 std::optional<VerifyReport> audit_step(const std::filesystem::path& file, const RunOptions& run, DiagnosticSink& sink) {
-  auto body = brep::read_step(file, {}, run, sink);
+  // Contact is looked for between triangles a thousandth of the part's size from the surface.
+  const auto body = brep::read_step(file, {.relative_deflection = 1e-3}, run, sink);
   if (!body) return std::nullopt;
   const brep::Audit audit = brep::audit(*body);
   VerifyReport report{.measures = brep::measure(*body), .closed = audit.clean()};
@@ -63,10 +64,6 @@ std::optional<VerifyReport> audit_step(const std::filesystem::path& file, const 
   expect_none(report, "orientation conflicts", audit.conflicts);
   expect_none(report, "open loops", audit.open_loops);
   expect_positive(report, report.measures.volume);
-  // Contact is looked for between triangles a thousandth of the part's size from the surface.
-  const Vec3 size = report.measures.box.max - report.measures.box.min;
-  body = brep::read_step(file, {.deflection_mm = 1e-3 * norm(size)}, run, sink);
-  if (!body) return std::nullopt;
   check_self_contact(report, triangle_mesh(*body));
   return report;
 }

@@ -36,6 +36,10 @@ std::optional<ConvertReport> convert(const fs::path& in, const fs::path& out, Ma
          .args = {"'" + out.string() + "': no format has this extension; convert writes .step .stp .brep .stl"}});
     return std::nullopt;
   }
+  if (!*needs_mesh && (options.deflection_mm || options.angle_rad)) {
+    sink.report({.code = Code::usage, .args = {"--deflection and --angle have an effect for .stl only"}});
+    return std::nullopt;
+  }
   if (write.ascii && !*needs_mesh) {
     sink.report({.code = Code::usage, .args = {"--ascii has an effect for .stl only"}});
     return std::nullopt;

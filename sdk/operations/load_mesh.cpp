@@ -15,9 +15,12 @@
 namespace meso::operations {
 
 std::optional<TriangleMesh> read_stl_file(const std::filesystem::path& file, DiagnosticSink& sink) {
+  std::error_code error;
+  if (std::filesystem::is_directory(file, error)) error = std::make_error_code(std::errc::is_a_directory);
   std::ifstream in(file, std::ios::binary);
-  if (!in) {
-    sink.report({.code = Code::file_not_found, .args = {file.string(), std::generic_category().message(errno)}});
+  if (!in && !error) error = {errno, std::generic_category()};
+  if (error) {
+    sink.report({.code = Code::file_not_found, .args = {file.string(), error.message()}});
     return std::nullopt;
   }
   const std::string bytes((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());

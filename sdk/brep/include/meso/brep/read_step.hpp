@@ -19,6 +19,7 @@ namespace meso::brep {
 
 struct ReadStepOptions {
   std::optional<double> deflection_mm{};
+  std::optional<double> relative_deflection{};  ///< the same as a fraction of the diagonal of the solids' box
   double angle_rad = 0.5;
 };
 
