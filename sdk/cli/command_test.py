@@ -238,6 +238,9 @@ class Outputs(CommandTest):
         with open("/dev/full", "wb") as full:
             done = subprocess.run([MESO, "info", str(good)], stdout=full, stderr=subprocess.PIPE)
             self.assertEqual(done.returncode, 7, done.stderr)
+        if "render" in VERBS:
+            (self.folder / "full.png").symlink_to("/dev/full")
+            self.expect(7, "render", good, self.folder / "full.png", "--width", "64", "--height", "64", says="WRITE_FAILED")
         if "convert" in VERBS:
             self.expect(7, "convert", good, self.folder / "none" / "out.step", says="WRITE_FAILED")
             self.expect(7, "convert", good, self.folder / "full.stl", says="WRITE_FAILED")

@@ -24,7 +24,10 @@ int canonical(Run& run, const std::string& in, const std::string& out) {
   } else {
     clean_on_stop(out);
     auto file = OutputFile::create(out, run.existing_file(), run.sink);
-    if (file && file->write(bytes)) (void)file->commit(run.sink);
+    if (file) {
+      (void)file->write(bytes);  // commit() reports what went wrong
+      (void)file->commit(run.sink);
+    }
   }
   return run.finish();
 }

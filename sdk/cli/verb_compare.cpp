@@ -73,7 +73,8 @@ std::optional<Series> parse_series(const std::string& text, Run& run) {
 bool write_text(const fs::path& file, const std::string& text, Run& run) {
   clean_on_stop(file);
   auto out = OutputFile::create(file.string(), run.existing_file(), run.sink);
-  return out && out->write(text) && out->commit(run.sink);
+  if (out) (void)out->write(text);  // commit() reports what went wrong
+  return out && out->commit(run.sink);
 }
 
 /// A value as part of a file name: "60mm/6" names no folder.

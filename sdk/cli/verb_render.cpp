@@ -38,7 +38,10 @@ int render_verb(Run& run, const std::string& in, const std::string& out, const s
   const auto image = picture::draw(*mesh, look, options->run, run.sink);
   if (!image) return run.finish();
   auto file = OutputFile::create(out, run.existing_file(), run.sink);
-  if (file && file->write(picture::png(*image))) (void)file->commit(run.sink);
+  if (file) {
+    (void)file->write(picture::png(*image));  // commit() reports what went wrong
+    (void)file->commit(run.sink);
+  }
   const int code = run.finish();
   if (code == 0)
     fmt::print(stderr, "{}: {} x {}, {} triangles\n", out, image->width, image->height, mesh->triangles.size());
