@@ -21,6 +21,7 @@ constexpr double volume_tolerance = 1e-6;  ///< relative, of the identity
 // Surfaces that nearly coincide intersect in edges that are barely known; those agree with every identity and are
 // wrong.
 constexpr double edge_tolerance_mm = 1e-4;
+constexpr std::size_t points_each = 16;  ///< of a piece, looked at one by one
 
 /// Lets OpenCASCADE ask whether to go on.
 class StopWatch : public Message_ProgressIndicator {
@@ -92,29 +93,30 @@ class Pieces {
     return std::fabs(sum - whole) <= volume_tolerance * whole;
   }
 
-  /// Whether pieces lie in exactly the arguments they came from. They do not where bodies that almost coincide were not
-  /// split along each other: two pieces then fill the same space, and every sum still holds.
-  [[nodiscard]] bool overlap() const {
+  /// Whether a piece reaches out of an argument it came from, or into another. That happens where surfaces almost
+  /// coincide and were not split along each other, and every sum still holds.
+  [[nodiscard]] bool misplaced() const {
     std::vector<Bnd_Box> boxes;
     std::deque<BRepClass3d_SolidClassifier> classifiers;  // they cannot be moved
     for (const TopoDS_Shape& argument : arguments_) {
       BRepBndLib::Add(argument, boxes.emplace_back());
       classifiers.emplace_back(argument);
     }
-    // A classification can fail by chance: it takes two points to convict.
     const auto is_owner = [&](const Owners& piece, std::size_t a) {
       return std::ranges::count(piece.arguments, a) > 0;
     };
     for (std::size_t i = 0; i < owners_.size(); ++i) {
       const Owners& piece = owners_[i];
-      const std::vector<Vec3> points = points_within(pieces_(static_cast<int>(i) + 1), 2);
-      for (std::size_t a = 0; a < arguments_.size() && points.size() == 2; ++a) {
-        const bool contradicted = std::ranges::all_of(points, [&](Vec3 p) {
-          if (boxes[a].IsOut(to_pnt(p))) return is_owner(piece, a);
+      const std::vector<Vec3> points = points_within(pieces_(static_cast<int>(i) + 1), points_each);
+      for (std::size_t a = 0; a < arguments_.size(); ++a) {
+        const auto is_beyond = [&](Vec3 p) { return boxes[a].IsOut(to_pnt(p)); };
+        if (is_owner(piece, a) && std::ranges::any_of(points, is_beyond)) return true;
+        const auto contradictions = std::ranges::count_if(points, [&](Vec3 p) {
+          if (is_beyond(p)) return false;
           classifiers[a].Perform(to_pnt(p), Precision::Confusion());
           return classifiers[a].State() == (is_owner(piece, a) ? TopAbs_OUT : TopAbs_IN);
         });
-        if (contradicted) return true;
+        if (contradictions >= 2) return true;  // a single classification can fail by chance
       }
     }
     return false;
@@ -168,7 +170,7 @@ std::optional<std::string> fault_of(const BOPAlgo_BOP& operation, BOPAlgo_Operat
   }
   const double expected = pieces.expected(kind);
   if (std::fabs(volume - expected) <= volume_tolerance * pieces.total()) {
-    if (pieces.overlap()) return "two of its pieces fill the same space";
+    if (pieces.misplaced()) return "a piece is not where it comes from";
     return {};
   }
   return "its volume is " + format_number(volume) + " mm3 where the pieces have " + format_number(expected) + " mm3";

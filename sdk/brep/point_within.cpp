@@ -3,6 +3,7 @@
 
 #include <BOPTools_AlgoTools3D.hxx>
 #include <IntTools_Context.hxx>
+#include <algorithm>
 #include <optional>
 
 #include "face_moments.hpp"
@@ -10,7 +11,6 @@
 namespace meso::brep {
 namespace {
 
-constexpr std::size_t most_faces = 12;              ///< after that a solid is too thin
 constexpr double deepest = 0.1, shallowest = 1e-4;  ///< of the face's extent
 
 std::optional<Vec3> inward_normal(const TopoDS_Face& face, const gp_Pnt2d& at) {
@@ -30,12 +30,13 @@ std::vector<Vec3> points_within(const TopoDS_Shape& solid, std::size_t count) {
   std::vector<Vec3> points;
   const Handle(IntTools_Context) context = new IntTools_Context;
   BRepClass3d_SolidClassifier classifier(solid);
-  std::size_t tried = 0;
-  for (TopExp_Explorer it(solid, TopAbs_FACE); it.More() && points.size() < count && tried < most_faces; it.Next()) {
-    const TopoDS_Face& face = TopoDS::Face(it.Current());
+  TopTools_IndexedMapOfShape faces;
+  TopExp::MapShapes(solid, TopAbs_FACE, faces);
+  const auto all = static_cast<std::size_t>(faces.Extent());
+  for (std::size_t i = 0, taken = std::min(count, all); i < taken; ++i) {
+    const TopoDS_Face& face = TopoDS::Face(faces(static_cast<int>(i * all / taken) + 1));
     gp_Pnt on_face;
     gp_Pnt2d at;
-    ++tried;
     if (BOPTools_AlgoTools3D::PointInFace(face, on_face, at, context) != 0) continue;
     const std::optional<Vec3> inwards = inward_normal(face, at);
     if (!inwards) continue;

@@ -35,7 +35,7 @@ class Balls {
 };
 
 bool size_holds(const char* name, double value, ElementId where, const SolidContext& context) {
-  if (std::isfinite(value) && value > smallest_size) return true;
+  if (value > smallest_size && value < largest_size) return true;
   context.report(Code::geometry_size, where, {name, format_number(value)});
   return false;
 }
@@ -54,8 +54,8 @@ std::optional<Solids> beam_primitives(const eval::BeamsShape& beams, const Affin
   Balls balls;
   Solids solids;
   for (const eval::StrutNode& node : beams.nodes) {
-    if (!std::isfinite(norm(node.position))) {
-      context.report(Code::geometry_size, where, {"the position of a node", "not finite"});
+    if (!(norm(node.position) < largest_size)) {
+      context.report(Code::geometry_size, where, {"the distance of a node from the origin", "more, or not a number"});
       return {};
     }
     if (node.ball_radius == 0) continue;

@@ -17,14 +17,13 @@ struct NamedSize {
   double value;
 };
 
-bool all_finite(std::initializer_list<Vec3> points) {
-  return std::ranges::all_of(points,
-                             [](Vec3 p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); });
+bool all_near(std::initializer_list<Vec3> points) {
+  return std::ranges::all_of(points, [](Vec3 p) { return norm(p) < largest_size; });
 }
 
 bool sizes_hold(std::initializer_list<NamedSize> sizes, ElementId where, const SolidContext& context) {
   for (const auto& [name, value] : sizes) {
-    if (std::isfinite(value) && value > smallest_size) continue;
+    if (value > smallest_size && value < largest_size) continue;
     context.report(Code::geometry_size, where, {std::string(name), format_number(value)});
     return false;
   }
@@ -32,8 +31,8 @@ bool sizes_hold(std::initializer_list<NamedSize> sizes, ElementId where, const S
 }
 
 bool positions_hold(std::initializer_list<Vec3> points, ElementId where, const SolidContext& context) {
-  if (all_finite(points)) return true;
-  context.report(Code::geometry_size, where, {"the position", "a number that is not finite"});
+  if (all_near(points)) return true;
+  context.report(Code::geometry_size, where, {"a distance from the origin", "more, or not a number"});
   return false;
 }
 

@@ -13,6 +13,8 @@ namespace meso::brep {
 
 /// Sizes below this are no sizes (millimetres).
 inline constexpr double smallest_size = 1e-6;
+/// Beyond it doubles do not resolve what OpenCASCADE takes to be one point, and its algorithms may not end.
+inline constexpr double largest_size = 1e8;
 
 /// The polygon swept by `sweep`, every point mapped: any affine map keeps the faces plane. Either sense.
 [[nodiscard]] TopoDS_Shape prism(const std::vector<Vec3>& polygon, Vec3 sweep, const Affine& map);
