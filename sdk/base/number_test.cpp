@@ -10,7 +10,8 @@ TEST(ParseNumber, TakesTheWholeTextOrNothing) {
   EXPECT_EQ(parse_number("1.5"), 1.5);
   EXPECT_EQ(parse_number("+2"), 2.0);
   EXPECT_EQ(parse_number("-.5e3"), -500.0);
-  for (const char* bad : {"", " 1", "1 ", "1,5", "0x10", "+-1", "++1", "1e", "abc"}) EXPECT_FALSE(parse_number(bad)) << bad;
+  for (const char* bad : {"", " 1", "1 ", "1,5", "0x10", "+-1", "++1", "1e", "abc"})
+    EXPECT_FALSE(parse_number(bad)) << bad;
 }
 
 TEST(ParseNumber, RefusesWhatIsNotFinite) {

@@ -2,9 +2,8 @@
 #pragma once
 // Booleans that are right or refused. OpenCASCADE's can be wrong without a word, so every result must add up: the
 // pieces that an operation splits its arguments into have the arguments' volumes, the result has the volume of the
-// pieces it is made of, points within each piece lie in the arguments it came from and in no other, every shell is closed
-// and every edge known to 1e-4 mm. One intersection serves the operation
-// and its check. Private.
+// pieces it is made of, points within each piece lie in the arguments it came from and in no other, every shell is
+// closed and every edge known to 1e-4 mm. One intersection serves the operation and its check. Private.
 //
 // Arguments are Solids: outward oriented, and disjoint within one set. A failed check is tried again with a fuzzy
 // tolerance of 1e-6 and 1e-5 mm, then reported as GEOMETRY_BOOLEAN. A stop asked for by the run options is CANCELLED or

@@ -121,7 +121,7 @@ bool write_json(const CellStream& cells, TextOutput& out, DiagnosticSink& sink) 
         return true;
       },
       sink);
-  out.write("\n]}\n");
+  out.write(fmt::format("\n],\"diagnostics\":{}}}\n", diagnostics_json(sink).dump()));
   return done;
 }
 
@@ -155,6 +155,11 @@ int eval_verb(Run& run, const std::string& in, const std::string& out_path, cons
   const auto cells = evaluation->cells(*pattern, run.sink);
   if (!cells) return run.finish();
   const bool json = run.flags.json || out_path.ends_with(".json");
+  // A look at every cell first: a fault in the last one must not leave half a table behind.
+  if (!cells->visit(
+          0, cells->size(), [](const PlacedCell&) { return true; }, run.sink)) {
+    return run.finish({{"pattern", pattern->id.text}, {"unitCell", pattern->unit_cell.text}, {"cells", Json::array()}});
+  }
   auto out = TextOutput::open(out_path, run);
   if (out && (json ? write_json(*cells, *out, run.sink) : write_csv(*cells, *out, run.sink)))
     (void)out->commit(run.sink);

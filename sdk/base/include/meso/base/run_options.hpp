@@ -11,7 +11,8 @@
 
 namespace meso {
 
-/// Budgets have safe defaults; 0 jobs means one per core. Work that would exceed a budget ends with a LIMIT_* diagnostic.
+/// Budgets have safe defaults; 0 jobs means one per core. Work that would exceed a budget ends with a LIMIT_*
+/// diagnostic.
 struct RunOptions {
   unsigned jobs = 0;
   std::uint64_t max_cells = 10'000'000;
