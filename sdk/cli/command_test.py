@@ -287,12 +287,13 @@ class Outputs(CommandTest):
     def test_equal_bytes(self):
         shutil.copy(BEAM.parent / "ibeam.step", self.folder)
         beam = shutil.copy(BEAM, self.folder)
-        for name in ("a.step", "a.stl", "a.brep"):
+        small = self.file("small.meso", document())
+        for source, name, values in ((beam, "a.step", ["--set", "pitch=10mm"]), (beam, "a.stl", ["--set", "pitch=10mm"]), (small, "a.brep", [])):
             variants = [["--jobs", "1"], ["--jobs", "2"], ["--jobs", "7"], ["--jobs", "7"]]
             seen = set()
             for number, flags in enumerate(variants):
                 locale = {**os.environ, "LC_ALL": ["C", "C.UTF-8", "de_DE.UTF-8", "tr_TR.UTF-8"][number]}
-                self.expect(0, "convert", beam, self.out(name), "--set", "pitch=10mm", *flags, env=locale)
+                self.expect(0, "convert", source, self.out(name), *values, *flags, env=locale)
                 seen.add(self.out(name).read_bytes())
             with self.subTest(name=name):
                 self.assertEqual(len(seen), 1)
