@@ -22,7 +22,7 @@ namespace meso {
 
 // Element names of variant alternatives (elements whose name depends on their parent's field are named in describe()).
 template <class T>
-inline constexpr std::string_view element_name = "";
+inline constexpr std::string_view element_name{};
 #define MESO_ELEMENT(Type, Text) \
   template <>                    \
   inline constexpr std::string_view element_name<Type> = Text
