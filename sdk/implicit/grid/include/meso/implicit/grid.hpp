@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// The nodes at which a field is sampled: a box, both ends included, and a number of nodes along each axis.
+//
+//   Grid grid{.box = {{-1, -1, -1}, {1, 1, 1}}, .nodes = {800, 800, 800}};   // 799 cells along each axis
+//   grid.coordinate(0, 799) == 1
+
+#include <array>
+#include <cstdint>
+
+#include "meso/base/vec.hpp"
+
+namespace meso::implicit {
+
+struct Grid {
+  Box3 box;
+  std::array<std::int32_t, 3> nodes{2, 2, 2};  ///< at least 2 each
+
+  /// Never accumulated, and the last node is the box's end to the bit. REQUIRES: 0 <= i < nodes[axis].
+  [[nodiscard]] double coordinate(std::size_t axis, std::int32_t i) const {
+    const std::int32_t last = nodes[axis] - 1;
+    return i == last ? box.max[axis] : box.min[axis] + (box.max[axis] - box.min[axis]) * i / last;
+  }
+  [[nodiscard]] Vec3 node(std::int32_t i, std::int32_t j, std::int32_t k) const {
+    return {coordinate(0, i), coordinate(1, j), coordinate(2, k)};
+  }
+  [[nodiscard]] double spacing(std::size_t axis) const { return (box.max[axis] - box.min[axis]) / (nodes[axis] - 1); }
+  [[nodiscard]] std::uint64_t node_count() const {
+    return std::uint64_t(nodes[0]) * std::uint64_t(nodes[1]) * std::uint64_t(nodes[2]);
+  }
+};
+
+/// About `total` nodes over a box, as near to cubes as whole numbers allow: n_i = L_i (total / L_x L_y L_z)^(1/3),
+/// rounded, at least 2. REQUIRES: a box of positive size.
+[[nodiscard]] std::array<std::int32_t, 3> nodes_for_total(const Box3& box, double total);
+
+}  // namespace meso::implicit

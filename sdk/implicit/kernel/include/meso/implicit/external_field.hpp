@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// A field that is asked, not compiled: the distance to a mesh, a body of another engine. It stands as a leaf in a Term.
+
+#include <cstdint>
+#include <memory>
+
+#include "meso/base/vec.hpp"
+#include "meso/implicit/grid.hpp"
+#include "meso/implicit/interval.hpp"
+
+namespace meso::implicit {
+
+/// Rows of an external field on a grid; one per thread.
+class ExternalRows {
+ public:
+  ExternalRows() = default;
+  ExternalRows(const ExternalRows&) = delete;
+  ExternalRows& operator=(const ExternalRows&) = delete;
+  virtual ~ExternalRows() = default;
+  /// Values at nodes (first ... last - 1, j, k) of the grid into out[0 ...]. The sign is right everywhere; the value is
+  /// exact where its magnitude is at most `band` (see rows()), and elsewhere only beyond `band` with the right sign.
+  virtual void row(std::int32_t j, std::int32_t k, std::int32_t first, std::int32_t last, double* out) = 0;
+};
+
+class ExternalField {
+ public:
+  ExternalField() = default;
+  ExternalField(const ExternalField&) = delete;
+  ExternalField& operator=(const ExternalField&) = delete;
+  virtual ~ExternalField() = default;
+
+  [[nodiscard]] virtual double value(Vec3 p) const = 0;
+  [[nodiscard]] virtual Interval interval(const Box3& box) const = 0;
+  [[nodiscard]] virtual double lipschitz() const = 0;  ///< |f(p) - f(q)| <= lipschitz |p - q|; infinity: not known
+  [[nodiscard]] virtual Box3 bounds(double level) const = 0;  ///< holds {f <= level}; may be infinite
+
+  /// Samples of p -> f(field_from_grid p) at the grid's nodes. `band`: who asks looks only at values up to this
+  /// magnitude; 0 asks for signs, infinity for exact values everywhere. Shares what is prepared: call once per grid,
+  /// then make_rows() per thread.
+  class Prepared {
+   public:
+    Prepared() = default;
+    Prepared(const Prepared&) = delete;
+    Prepared& operator=(const Prepared&) = delete;
+    virtual ~Prepared() = default;
+    [[nodiscard]] virtual std::unique_ptr<ExternalRows> make_rows() const = 0;
+  };
+  [[nodiscard]] virtual std::unique_ptr<Prepared> prepare(const Grid& grid, const Affine& field_from_grid,
+                                                          double band) const = 0;
+};
+
+}  // namespace meso::implicit
