@@ -36,7 +36,10 @@ std::string render(const Diagnostic& d) {
   out += info(d.code).name;
   out += ": ";
   out += message(d);
-  for (const Related& r : d.related) out += "\n  " + place(r.where) + ": " + r.note;
+  for (const Related& r : d.related) {
+    const std::string where = place(r.where);
+    out += "\n  " + (where.empty() ? "" : where + ": ") + r.note;
+  }
   return out;
 }
 

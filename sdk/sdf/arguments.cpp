@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "arguments.hpp"
+
+#include <algorithm>
+#include <numbers>
+
+#include "meso/implicit/field_arguments.hpp"
+
+namespace meso::sdf {
+namespace {
+
+constexpr LengthUnit unit = LengthUnit::millimeter;
+
+/// The expression, or why `text` is none; names must be among `known`.
+struct Parsed {
+  std::optional<expr::Expression> expression{};
+  TextFault fault{};
+};
+Parsed parse(std::string_view text, std::initializer_list<std::string_view> known) {
+  auto parsed = expr::parse_expression(text, unit);
+  if (!parsed.expression) {
+    const expr::ParseError& e = *parsed.error;
+    return {.fault = {e.offset, e.length, message({.code = e.code, .args = e.args})}};
+  }
+  for (const expr::Name& name : parsed.expression->names()) {
+    if (std::find(known.begin(), known.end(), name.text) != known.end()) continue;
+    std::string among;
+    for (const std::string_view k : known) among += (among.empty() ? "" : ", ") + std::string(k);
+    return {.fault = {name.offset, name.text.size(), "there is no name '" + name.text + "' here, only pi, " + among}};
+  }
+  return {.expression = std::move(parsed.expression)};
+}
+
+}  // namespace
+
+NumberList read_numbers(std::string_view text, std::initializer_list<std::size_t> counts) {
+  const auto items = expr::split_list(text);
+  if (std::find(counts.begin(), counts.end(), items.size()) == counts.end()) {
+    std::string wanted;
+    for (const std::size_t count : counts) wanted += (wanted.empty() ? "" : " or ") + std::to_string(count);
+    return {.fault = TextFault{.why = wanted + (wanted == "1" ? " number is" : " numbers are") + " expected, found " +
+                                      std::to_string(items.size())}};
+  }
+  NumberList out;
+  for (const auto& item : items) {
+    Parsed parsed = parse(item.text, {"tau"});
+    if (!parsed.expression) {
+      parsed.fault.offset += item.offset;
+      return {.fault = std::move(parsed.fault)};
+    }
+    const double tau[] = {2 * std::numbers::pi};
+    const auto value = expr::evaluate(*parsed.expression, tau);
+    if (!value)
+      return {.fault =
+                  TextFault{item.offset, item.text.size(), "'" + std::string(item.text) + "' has no finite value"}};
+    out.numbers.push_back(value.value);
+  }
+  return out;
+}
+
+std::optional<TextFault> formula_fault(std::string_view text) {
+  const Parsed parsed = parse(text, {"tau", "x", "y", "z"});
+  return parsed.expression ? std::nullopt : std::optional(parsed.fault);
+}
+
+std::string fault_of(const Instruction& instruction) {
+  const auto& n = instruction.numbers;
+  const Vec3 v{n[0], n[1], n[2]};
+  std::optional<Diagnostic> fault;
+  switch (instruction.verb) {
+    case Verb::cone:
+      fault = implicit::check_cone(n[0], n[1], n[2]);
+      break;
+    case Verb::torus:
+      fault = implicit::check_torus(n[0], n[1]);
+      break;
+    case Verb::capsule:
+      fault = implicit::check_size("radius", n[6]);
+      break;
+    case Verb::shell:
+      fault = implicit::check_shell(n[0]);
+      break;
+    case Verb::eccentric_shell:
+      fault = implicit::check_eccentric_shell(n[0], n[1]);
+      break;
+    case Verb::scale:
+      fault = implicit::check_scale(v);
+      break;
+    case Verb::rotate:
+      fault = implicit::check_rotation(v, n[3]);
+      break;
+    case Verb::half_space:
+    case Verb::mirror:
+    case Verb::orient:
+      fault = implicit::check_direction(instruction.word.text, v);
+      break;
+    default:
+      break;
+  }
+  return fault ? message(*fault) : std::string();
+}
+
+}  // namespace meso::sdf

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// Arguments as text: lists of constant expressions, formulas of the point, and what a word demands of its numbers.
+
+#include <initializer_list>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "meso/expr/expression.hpp"
+#include "meso/sdf/program.hpp"
+
+namespace meso::sdf {
+
+/// A part of a text that cannot be read, and why.
+struct TextFault {
+  std::size_t offset = 0;
+  std::size_t length = std::string_view::npos;
+  std::string why{};
+};
+
+struct NumberList {
+  std::vector<double> numbers{};
+  std::optional<TextFault> fault{};
+};
+/// Constant expressions, separated by the commas outside parentheses; as many as one of `counts`, all finite.
+[[nodiscard]] NumberList read_numbers(std::string_view text, std::initializer_list<std::size_t> counts);
+
+/// Nothing if `text` is an expression of x, y, z.
+[[nodiscard]] std::optional<TextFault> formula_fault(std::string_view text);
+
+/// Why the numbers of an instruction make no sense: "a shell's thickness is not negative". Empty: they do.
+[[nodiscard]] std::string fault_of(const Instruction& instruction);
+
+}  // namespace meso::sdf
