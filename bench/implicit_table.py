@@ -1,0 +1,193 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""Prints the implicit engine's table of docs/performance.md as Markdown: meso sdf beside VTK and OpenVDB.
+
+  cmake --preset release && cmake --build --preset release && bench/implicit_table.py [--pairs N] [--only WORD]
+
+Ours and each peer run alternately, so that a neighbour's load meets both; figures are medians, ratios are medians of the
+pairs' ratios. CPU is user plus system time of the whole process, file included. Peers that are not installed
+(scripts/install-deps.sh --all) are left out. Error: distance of vertices from the surface, first order |f| / |grad f|, in
+grid spacings, of 50 000 vertices that do not lie in the box planes.
+"""
+import argparse
+import json
+import math
+import os
+import pathlib
+import random
+import statistics
+import struct
+import subprocess
+import sys
+import tempfile
+import time
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+BINARIES = ROOT / "build/release/bin"
+GYROID = "cos(2*pi*x)*sin(2*pi*y) + cos(2*pi*y)*sin(2*pi*z) + cos(2*pi*z)*sin(2*pi*x)"
+HIERARCHY = "ball scale 5 tpms.p scale 4 tpms.d scale 3.75 tpms.gyroid scale 1.25 intersection intersection intersection".split()
+
+
+def run(command):
+    """What one process costs, and what it prints as JSON."""
+    read, write = os.pipe()
+    begin = time.monotonic()
+    job = subprocess.Popen([str(c) for c in command], stdout=write, stderr=subprocess.DEVNULL)
+    os.close(write)
+    with os.fdopen(read) as pipe:
+        printed = pipe.read()
+    _, status, usage = os.wait4(job.pid, 0)
+    wall = time.monotonic() - begin
+    job.returncode = os.waitstatus_to_exitcode(status)
+    if job.returncode != 0:
+        sys.exit(f"{' '.join(map(str, command))}: exit code {job.returncode}")
+    return {"user": usage.ru_utime, "cpu": usage.ru_utime + usage.ru_stime, "wall": wall, "peak": usage.ru_maxrss / 1024,
+            **json.loads(printed)}
+
+
+def gyroid_error(ply, samples):
+    """Largest and root mean square error of vertices, in grid spacings."""
+    h = 2 / (samples - 1)
+    with open(ply, "rb") as file:
+        count, line = 0, b""
+        while line.strip() != b"end_header":
+            line = file.readline()
+            if line.startswith(b"element vertex"):
+                count = int(line.split()[2])
+        start = file.tell()
+        random_numbers = random.Random(1)
+        errors = []
+        for _ in range(500):
+            file.seek(start + 12 * random_numbers.randrange(max(count - 100, 1)))
+            for point in struct.iter_unpack("<3f", file.read(1200)):
+                if max(map(abs, point)) > 1 - h / 2:
+                    continue
+                (sx, cx), (sy, cy), (sz, cz) = ((math.sin(a), math.cos(a)) for a in (2 * math.pi * c for c in point))
+                slope = 2 * math.pi * math.hypot(cz * cx - sx * sy, cx * cy - sy * sz, cy * cz - sz * sx)
+                errors.append(abs(cx * sy + cy * sz + cz * sx) / slope / h)
+    return max(errors), math.sqrt(sum(e * e for e in errors) / len(errors))
+
+
+def median(runs, key):
+    return statistics.median(r[key] for r in runs)
+
+
+def row(name, runs, samples=None, ours=None):
+    triangles = runs[0]["triangles"]
+    error = f"{runs[0]['error'][0]:.3f} / {runs[0]['error'][1]:.3f}" if "error" in runs[0] else ""
+    ratio = lambda key: statistics.median(a[key] / b[key] for a, b in zip(ours, runs)) if ours else None
+    ratios = f"{ratio('cpu'):.3f} / {ratio('user'):.3f} / {ratio('wall'):.3f}" if ours else ""
+    print(f"| {name} | {median(runs, 'cpu'):.2f} | {median(runs, 'user'):.2f} | {median(runs, 'wall'):.2f} "
+          f"| {median(runs, 'peak'):.0f} | {triangles:,} | {error} | {ratios} |", flush=True)
+
+
+def head(title):
+    print(f"\n{title}\n\n| | CPU s | user s | wall s | peak MiB | triangles | error max / rms | ours over it: CPU / user / wall |")
+    print("|---|---:|---:|---:|---:|---:|---:|---:|")
+
+
+def alternate(commands, pairs, out, samples):
+    """name -> runs, one of each in turn."""
+    runs = {name: [] for name in commands}
+    for _ in range(pairs):
+        for name, command in commands.items():
+            # Writing over an old large file costs other system time than writing a new one.
+            out.unlink(missing_ok=True)
+            done = run(command)
+            if not runs[name] and samples:
+                done["error"] = gyroid_error(out, samples)
+            runs[name].append(done)
+    return runs
+
+
+def against_peers(samples, pairs, out):
+    head(f"Gyroid as a text over [-1,1]³, {samples}³ samples, closed at the box, binary PLY; medians of {pairs}")
+    commands = {}
+    for threads in (1, 2):
+        commands[f"meso, {threads} thread{'s' * (threads > 1)}"] = [
+            BINARIES / "meso", "sdf", "expression", GYROID, "-s", f"{samples},{samples},{samples}", "-b", "-1,-1,-1,1,1,1",
+            "-o", out, "--json", "--jobs", threads]
+        for title, peer in (("VTK FlyingEdges", "vtk_flying_edges"), ("OpenVDB", "openvdb")):
+            binary = BINARIES / f"meso_bench_peer_{peer}"
+            if binary.exists():
+                commands[f"{title}, {threads} thread{'s' * (threads > 1)}"] = [binary, samples, threads, out]
+    runs = alternate(commands, pairs, out, samples)
+    for name, done in runs.items():
+        threads = name.split(", ")[1]
+        row(name, done, ours=None if name.startswith("meso") else runs[f"meso, {threads}"])
+    one, two = runs["meso, 1 thread"], runs["meso, 2 threads"]
+    print(f"\nWall on 2 threads over wall on one: {statistics.median(b['wall'] / a['wall'] for a, b in zip(one, two)):.2f}.")
+
+
+def ours_alone(pairs, out, folder):
+    head(f"meso sdf alone, 1 thread; medians of {pairs}")
+    flags = ["-o", out, "--json", "--jobs", 1]
+    box = lambda half: ["-b", ",".join([f"-{half}"] * 3 + [f"{half}"] * 3)]
+    meso = [BINARIES / "meso", "sdf"]
+    mesh = folder / "torus.ply"
+    write_torus(mesh, 1000, 500)
+    commands = {
+        "gyroid as a text, 1600³": meso + ["expression", GYROID, "-s", "1600,1600,1600"] + box(1) + flags,
+        "hierarchy of figure 6, 512³": meso + HIERARCHY + ["-s", "512,512,512"] + box(4) + flags,
+        "1 million triangles ∩ gyroid, 200³": meso + ["file", mesh, "tpms.gyroid", "scale", "0.5", "intersection", "-s", "200^3"] + flags,
+    }
+    runs = alternate(commands, pairs, out, None)
+    for name, done in runs.items():
+        row(name, done)
+    loading = runs["1 million triangles ∩ gyroid, 200³"]
+    print(f"\nOf the mesh's row, reading the file took {statistics.median(r['seconds']['read'] for r in loading):.2f} s wall.")
+
+
+def write_torus(path, around, across):
+    """A torus of 2 * around * across triangles in shuffled order; radii 1 and 0.4."""
+    points = []
+    for i in range(around):
+        u = 2 * math.pi * i / around
+        for j in range(across):
+            v = 2 * math.pi * j / across
+            ring = 1 + 0.4 * math.cos(v)
+            points.append(struct.pack("<3f", ring * math.cos(u), ring * math.sin(u), 0.4 * math.sin(v)))
+    corner = lambda i, j: (i % around) * across + j % across
+    faces = []
+    for i in range(around):
+        for j in range(across):
+            a, b, c, d = corner(i, j), corner(i + 1, j), corner(i + 1, j + 1), corner(i, j + 1)
+            faces += [struct.pack("<B3i", 3, a, b, c), struct.pack("<B3i", 3, a, c, d)]
+    random.Random(1).shuffle(faces)
+    header = (f"ply\nformat binary_little_endian 1.0\nelement vertex {len(points)}\nproperty float x\nproperty float y\n"
+              f"property float z\nelement face {len(faces)}\nproperty list uchar int vertex_indices\nend_header\n")
+    path.write_bytes(header.encode() + b"".join(points) + b"".join(faces))
+
+
+def kernels():
+    binary = BINARIES / "meso_bench_implicit"
+    report = subprocess.run([binary, "--benchmark_format=json"], stdout=subprocess.PIPE, check=True).stdout
+    times = {b["name"]: b["cpu_time"] for b in json.loads(report)["benchmarks"]}
+    print("\nFilling, one thread, CPU nanoseconds per sample in rows of 800 (meso_bench_implicit)\n")
+    print("| expression | meso | muParser's bulk mode | ratio |\n|---|---:|---:|---:|")
+    for name, ours in times.items():
+        kind, _, what = name.partition("/")
+        if kind == "fill":
+            peer = times.get(f"muparser/{what}")
+            print(f"| {what} | {ours:.2f} | " + (f"{peer:.1f} | {ours / peer:.4f} |" if peer else " | |"))
+
+
+def main():
+    parser = argparse.ArgumentParser()
+    parser.add_argument("--pairs", type=int, default=5)
+    parser.add_argument("--samples", type=int, default=800)
+    parser.add_argument("--only", choices=["peers", "ours", "kernels"])
+    arguments = parser.parse_args()
+    print(f"{os.cpu_count()} cores, load {os.getloadavg()[0]:.1f} at the start.")
+    with tempfile.TemporaryDirectory() as name:
+        folder = pathlib.Path(name)
+        if arguments.only in (None, "peers"):
+            against_peers(arguments.samples, arguments.pairs, folder / "out.ply")
+        if arguments.only in (None, "ours"):
+            ours_alone(arguments.pairs, folder / "out.ply", folder)
+        if arguments.only in (None, "kernels"):
+            kernels()
+
+
+if __name__ == "__main__":
+    main()
