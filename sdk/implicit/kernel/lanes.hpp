@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// A few doubles side by side, as wide as the instruction set that this file is compiled for, and the elementary
+// functions on them. Included only by row_kernels.cpp. Everything has internal linkage and nothing of the standard
+// library is inlined: a function compiled here for AVX-512 must never be the copy that the linker keeps for all.
+
+#include <immintrin.h>
+#include <math.h>
+
+#include <cstddef>
+#include <cstdint>
+
+namespace meso::implicit {
+namespace {
+
+#if defined(__AVX512F__)
+constexpr std::size_t width = 8;
+#elif defined(__AVX2__)
+constexpr std::size_t width = 4;
+#else
+constexpr std::size_t width = 2;
+#endif
+
+using Lanes = double __attribute__((vector_size(width * sizeof(double))));
+using Bits = std::int64_t __attribute__((vector_size(width * sizeof(double))));
+using Unsigned = std::uint64_t __attribute__((vector_size(width * sizeof(double))));
+using Floats = float __attribute__((vector_size(width * sizeof(float))));
+
+inline Lanes splat(double v) { return v - Lanes{}; }
+inline Lanes load(const double* p) { return *reinterpret_cast<const Lanes*>(p); }
+inline void store(double* p, Lanes v) { *reinterpret_cast<Lanes*>(p) = v; }
+inline Lanes absolute(Lanes v) { return (Lanes)((Bits)v & INT64_MAX); }
+inline Lanes with_sign_of(Lanes magnitude, Lanes v) { return (Lanes)((Bits)magnitude | ((Bits)v & INT64_MIN)); }
+inline Lanes truth(Bits condition) { return (Lanes)(condition & (Bits)splat(1)); }
+
+#if defined(__AVX512F__)
+inline Lanes square_root(Lanes v) { return (Lanes)_mm512_maskz_sqrt_pd(0xff, (__m512d)v); }
+inline unsigned sign_bits(Bits v) { return _mm512_movepi64_mask((__m512i)v); }
+inline unsigned negative(Lanes v) { return _mm512_cmp_pd_mask((__m512d)v, _mm512_setzero_pd(), _CMP_LT_OQ); }
+#elif defined(__AVX2__)
+inline Lanes square_root(Lanes v) { return (Lanes)_mm256_sqrt_pd((__m256d)v); }
+inline unsigned sign_bits(Bits v) { return static_cast<unsigned>(_mm256_movemask_pd((__m256d)v)); }
+inline unsigned negative(Lanes v) { return sign_bits(v < Lanes{}); }
+#else
+inline Lanes square_root(Lanes v) { return (Lanes)_mm_sqrt_pd((__m128d)v); }
+inline unsigned sign_bits(Bits v) { return static_cast<unsigned>(_mm_movemask_pd((__m128d)v)); }
+inline unsigned negative(Lanes v) { return sign_bits(v < Lanes{}); }
+#endif
+
+/// Adding it leaves the nearest whole number in the low bits, in two's complement (magnitudes below 2^51).
+constexpr double round_shift = 0x1.8p52;
+
+/// Lanes beyond the range of our own formula ask the C library.
+template <class Function>
+inline Lanes patched(Lanes result, Bits beyond, Lanes a, Lanes b, Function exact) {
+  if (sign_bits(beyond) == 0) [[likely]]
+    return result;
+  for (std::size_t k = 0; k < width; ++k)
+    if (beyond[k]) result[k] = exact(a[k], b[k]);
+  return result;
+}
+
+/// sin r for |r| <= pi/2: its power series; the next term is below 2e-18.
+inline Lanes sine_series(Lanes r) {
+  const Lanes s = r * r;
+  Lanes p = splat(1 / 51090942171709440000.);
+  p = p * s - 1 / 121645100408832000.;
+  p = p * s + 1 / 355687428096000.;
+  p = p * s - 1 / 1307674368000.;
+  p = p * s + 1 / 6227020800.;
+  p = p * s - 1 / 39916800.;
+  p = p * s + 1 / 362880.;
+  p = p * s - 1 / 5040.;
+  p = p * s + 1 / 120.;
+  p = p * s - 1 / 6.;
+  return r + r * (s * p);
+}
+
+/// x - m pi, pi in three parts (Cody and Waite): m has at most 22 bits, so the first two products are exact.
+inline Lanes less_multiple_of_pi(Lanes x, Lanes m) {
+  return ((x - m * 0x1.921fb544p+1) - m * 0x1.0b4611a4p-33) - m * 0x1.13198a2e03707p-64;
+}
+constexpr double trigonometric_range = 5e6;
+
+inline Lanes sine(Lanes x) {
+  const Lanes shifted = x * 0x1.45f306dc9c883p-2 + round_shift;  // 1 / pi
+  const Lanes r = less_multiple_of_pi(x, shifted - round_shift);
+  const Lanes result = (Lanes)((Bits)sine_series(r) ^ ((Bits)shifted << 63));
+  return patched(result, ~(absolute(x) <= trigonometric_range), x, x, [](double v, double) { return ::sin(v); });
+}
+
+inline Lanes cosine(Lanes x) {  // cos(r + (n + 1/2) pi) = -(-1)^n sin r
+  const Lanes shifted = (x * 0x1.45f306dc9c883p-2 - 0.5) + round_shift;
+  const Lanes r = less_multiple_of_pi(x, (shifted - round_shift) + 0.5);
+  const Lanes result = (Lanes)((Bits)sine_series(r) ^ (~(Bits)shifted << 63));
+  return patched(result, ~(absolute(x) <= trigonometric_range), x, x, [](double v, double) { return ::cos(v); });
+}
+
+/// 2^k for whole k in [-1022, 1023].
+inline Lanes power_of_two(Lanes k) { return (Lanes)(((Bits)(k + (round_shift + 1023))) << 52); }
+
+inline Lanes exponential(Lanes x) {
+  const Lanes n = (x * 0x1.71547652b82fep+0 + round_shift) - round_shift;  // 1 / ln 2
+  const Lanes r = (x - n * 0x1.62e42fefap-1) - n * 0x1.cf79abc9e3b3ap-40;
+  Lanes p = splat(1 / 6227020800.);
+  p = p * r + 1 / 479001600.;
+  p = p * r + 1 / 39916800.;
+  p = p * r + 1 / 3628800.;
+  p = p * r + 1 / 362880.;
+  p = p * r + 1 / 40320.;
+  p = p * r + 1 / 5040.;
+  p = p * r + 1 / 720.;
+  p = p * r + 1 / 120.;
+  p = p * r + 1 / 24.;
+  p = p * r + 1 / 6.;
+  p = p * r + 0.5;
+  const Lanes result = (1 + (r + r * r * p)) * power_of_two(n);
+  return patched(result, ~(absolute(x) <= 700), x, x, [](double v, double) { return ::exp(v); });
+}
+
+/// ln x = k ln 2 + ln(1 + f), 1 + f in [sqrt 1/2, sqrt 2]; with s = f / (2 + f) that logarithm is 2 artanh s, written
+/// as f - s (f - 2 s^2/3 - 2 s^4/5 - ...) because f is exact.
+inline Lanes logarithm(Lanes x) {
+  const Bits bits = (Bits)x;
+  const Lanes mantissa = (Lanes)((bits & 0xfffffffffffff) | (Bits)splat(1));
+  const Bits halve = mantissa > 0x1.6a09e667f3bcdp+0;
+  const Lanes biased = (Lanes)((Bits)((Unsigned)bits >> 52) | (Bits)splat(0x1p52)) - 0x1p52;
+  const Lanes k = biased - 1023 + truth(halve);
+  const Lanes f = (halve ? mantissa * 0.5 : mantissa) - 1;
+  const Lanes s = f / (2 + f);
+  const Lanes q = s * s;
+  Lanes p = splat(2 / 23.);
+  p = p * q + 2 / 21.;
+  p = p * q + 2 / 19.;
+  p = p * q + 2 / 17.;
+  p = p * q + 2 / 15.;
+  p = p * q + 2 / 13.;
+  p = p * q + 2 / 11.;
+  p = p * q + 2 / 9.;
+  p = p * q + 2 / 7.;
+  p = p * q + 2 / 5.;
+  p = p * q + 2 / 3.;
+  const Lanes result = k * 0x1.62e42fefap-1 + ((f - s * (f - q * p)) + k * 0x1.cf79abc9e3b3ap-40);
+  return patched(result, ~((x >= 0x1p-1022) & (x <= 0x1.fffffffffffffp+1023)), x, x,
+                 [](double v, double) { return ::log(v); });
+}
+
+inline Lanes hypotenuse(Lanes x, Lanes y) {
+  const Lanes a = absolute(x), b = absolute(y), larger = a < b ? b : a;
+  const Bits beyond = ~((larger <= 1e150) & ((larger >= 1e-140) | (larger == 0)));
+  return patched(square_root(x * x + y * y), beyond | ~(x == x) | ~(y == y), x, y,
+                 [](double u, double v) { return ::hypot(u, v); });
+}
+
+/// Nearest whole number, halves away from zero.
+inline Lanes rounded(Lanes x) {
+  const Lanes a = absolute(x);
+  const Lanes even = (a + 0x1p52) - 0x1p52;  // halves to even
+  const Lanes up = even + truth(a - even >= 0.5);
+  return with_sign_of(a < 0x1p52 ? up : a, x);
+}
+
+inline Lanes snapped(Lanes x) {
+  const Lanes nearest = rounded(x), a = absolute(x), one = splat(1);
+  return absolute(x - nearest) <= 1e-9 * (a > one ? a : one) ? nearest : x;
+}
+
+inline Lanes floored(Lanes x) {
+  const Lanes v = snapped(x), nearest = rounded(v);
+  return nearest > v ? nearest - 1 : nearest;
+}
+
+}  // namespace
+}  // namespace meso::implicit
