@@ -2,9 +2,10 @@
 #include "meso/implicit/term.hpp"
 
 #include <cassert>
-#include <unordered_map>
+#include <iterator>
 
-#include "meso/expr/operations.hpp"
+#include "meso/implicit/flat_term.hpp"
+#include "scalar_operation.hpp"
 
 namespace meso::implicit {
 
@@ -12,127 +13,21 @@ using expr::Op;
 
 namespace {
 
-double apply_one(Op op, std::span<const double> v) {
-  switch (op) {
-    case Op::negate:
-      return expr::apply<Op::negate>(v[0]);
-    case Op::logical_not:
-      return expr::apply<Op::logical_not>(v[0]);
-    case Op::floor:
-      return expr::apply<Op::floor>(v[0]);
-    case Op::ceil:
-      return expr::apply<Op::ceil>(v[0]);
-    case Op::round:
-      return expr::apply<Op::round>(v[0]);
-    case Op::abs:
-      return expr::apply<Op::abs>(v[0]);
-    case Op::sign:
-      return expr::apply<Op::sign>(v[0]);
-    case Op::sqrt:
-      return expr::apply<Op::sqrt>(v[0]);
-    case Op::exp:
-      return expr::apply<Op::exp>(v[0]);
-    case Op::log:
-      return expr::apply<Op::log>(v[0]);
-    case Op::sin:
-      return expr::apply<Op::sin>(v[0]);
-    case Op::cos:
-      return expr::apply<Op::cos>(v[0]);
-    case Op::tan:
-      return expr::apply<Op::tan>(v[0]);
-    case Op::asin:
-      return expr::apply<Op::asin>(v[0]);
-    case Op::acos:
-      return expr::apply<Op::acos>(v[0]);
-    case Op::atan:
-      return expr::apply<Op::atan>(v[0]);
-    case Op::add:
-      return expr::apply<Op::add>(v[0], v[1]);
-    case Op::subtract:
-      return expr::apply<Op::subtract>(v[0], v[1]);
-    case Op::multiply:
-      return expr::apply<Op::multiply>(v[0], v[1]);
-    case Op::divide:
-      return expr::apply<Op::divide>(v[0], v[1]);
-    case Op::power:
-      return expr::apply<Op::power>(v[0], v[1]);
-    case Op::less:
-      return expr::apply<Op::less>(v[0], v[1]);
-    case Op::less_equal:
-      return expr::apply<Op::less_equal>(v[0], v[1]);
-    case Op::greater:
-      return expr::apply<Op::greater>(v[0], v[1]);
-    case Op::greater_equal:
-      return expr::apply<Op::greater_equal>(v[0], v[1]);
-    case Op::equal:
-      return expr::apply<Op::equal>(v[0], v[1]);
-    case Op::not_equal:
-      return expr::apply<Op::not_equal>(v[0], v[1]);
-    case Op::mod:
-      return expr::apply<Op::mod>(v[0], v[1]);
-    case Op::atan2:
-      return expr::apply<Op::atan2>(v[0], v[1]);
-    case Op::hypot:
-      return expr::apply<Op::hypot>(v[0], v[1]);
-    case Op::min:
-      return expr::apply<Op::min>(v[0], v[1]);
-    case Op::max:
-      return expr::apply<Op::max>(v[0], v[1]);
-    case Op::clamp:
-      return expr::apply<Op::clamp>(v[0], v[1], v[2]);
-    case Op::hash:
-      return expr::apply_hash(v);
-    case Op::logical_and:
-      return v[0] != 0 && v[1] != 0 ? 1 : 0;
-    case Op::logical_or:
-      return v[0] != 0 || v[1] != 0 ? 1 : 0;
-    case Op::select:
-      return v[0] != 0 ? v[1] : v[2];
-    default:
-      break;
-  }
-  assert(!"an operation with operands");
-  return 0;
-}
-
-/// Rebuilds a tree with new leaves, each shared node once.
-template <class Leaf>
-class Rebuild {
- public:
-  explicit Rebuild(Leaf leaf) : leaf_(std::move(leaf)) {}
-  Term operator()(const Term& t) {
-    const auto found = done_.find(t.identity());
-    if (found != done_.end()) return found->second;
-    const TermNode& n = t.node();
-    Term result;
-    if (n.operands.empty()) {
-      result = leaf_(t);
-    } else {
-      std::vector<Term> operands;
-      for (const Term& operand : n.operands) operands.push_back((*this)(operand));
-      result = Term::apply(n.op, std::move(operands));
+/// The terms at the coordinates of source_from_target p.
+std::array<Term, 3> rows_of(const Affine& source_from_target) {
+  std::array<Term, 3> rows;
+  for (std::size_t row = 0; row < 3; ++row) {
+    Term sum = Term::constant(source_from_target.translation[row]);
+    for (std::size_t column = 3; column-- > 0;) {
+      const double factor = source_from_target.linear(row, column);
+      if (factor == 0) continue;
+      const Term coordinate = Term::coordinate(column);
+      const Term product = factor == 1 ? coordinate : factor * coordinate;
+      sum = sum.is_constant() && sum.node().number == 0 ? product : product + sum;
     }
-    done_.emplace(t.identity(), result);
-    return result;
+    rows[row] = sum;
   }
-
- private:
-  Leaf leaf_;
-  std::unordered_map<const TermNode*, Term> done_;
-};
-
-double walk(const Term& t, Vec3 p, std::unordered_map<const TermNode*, double>& done) {
-  const TermNode& n = t.node();
-  if (n.op == Op::number) return n.number;
-  if (n.op == Op::name)
-    return n.axis == TermNode::external_axis ? n.external->value(n.field_from_world * p) : p[n.axis];
-  const auto found = done.find(t.identity());
-  if (found != done.end()) return found->second;
-  std::array<double, 8> values{};
-  for (std::size_t i = 0; i < n.operands.size(); ++i) values[i] = walk(n.operands[i], p, done);
-  const double value = apply_one(n.op, {values.data(), n.operands.size()});
-  done.emplace(t.identity(), value);
-  return value;
+  return rows;
 }
 
 }  // namespace
@@ -161,8 +56,11 @@ Term Term::apply(Op op, std::vector<Term> operands) {
     constant_operands = constant_operands && operands[i].is_constant();
     values[i] = operands[i].node().number;
   }
-  if (constant_operands) return constant(apply_one(op, {values.data(), operands.size()}));
-  return Term(std::make_shared<TermNode>(TermNode{.op = op, .operands = std::move(operands)}));
+  if (constant_operands) return constant(apply_operation(op, {values.data(), operands.size()}));
+  const auto node = std::make_shared<TermNode>();
+  node->op = op;
+  node->operands = std::move(operands);
+  return Term(node);
 }
 
 Term Term::from_expression(const expr::Expression& expression, std::span<const Term> term_of_name) {
@@ -198,28 +96,41 @@ Term Term::from_expression(const expr::Expression& expression, std::span<const T
 }
 
 Term Term::at(const Affine& source_from_target) const {
-  std::array<Term, 3> rows;
-  for (std::size_t row = 0; row < 3; ++row) {
-    Term sum = constant(source_from_target.translation[row]);
-    for (std::size_t column = 3; column-- > 0;) {
-      const double factor = source_from_target.linear(row, column);
-      if (factor == 0) continue;
-      const Term product = factor == 1 ? coordinate(column) : factor * coordinate(column);
-      sum = sum.is_constant() && sum.node().number == 0 ? product : product + sum;
+  const std::array<Term, 3> rows = rows_of(source_from_target);
+  const FlatTerm flat(*this);
+  std::vector<Term> rebuilt;
+  rebuilt.reserve(flat.steps().size());
+  for (const FlatTerm::Step& step : flat.steps()) {
+    const TermNode& n = *step.node;
+    if (n.op == Op::number) {
+      rebuilt.push_back(constant(n.number));
+    } else if (n.op == Op::name) {
+      rebuilt.push_back(n.axis == TermNode::external_axis
+                            ? external(n.external, n.field_from_world * source_from_target)
+                            : rows[n.axis]);
+    } else {
+      std::vector<Term> operands;
+      for (const std::uint32_t index : flat.operands(step)) operands.push_back(rebuilt[index]);
+      rebuilt.push_back(apply(n.op, std::move(operands)));
     }
-    rows[row] = sum;
   }
-  return Rebuild([&](const Term& leaf) {
-    const TermNode& n = leaf.node();
-    if (n.op == Op::number) return leaf;
-    if (n.axis == TermNode::external_axis) return external(n.external, n.field_from_world * source_from_target);
-    return rows[n.axis];
-  })(*this);
+  return rebuilt.back();
 }
 
-double Term::value(Vec3 p) const {
-  std::unordered_map<const TermNode*, double> done;
-  return walk(*this, p, done);
+double Term::value(Vec3 p) const { return FlatTerm(*this).value(p); }
+
+// A chain of a hundred thousand operations must not be destroyed by as many nested calls.
+TermNode::~TermNode() {
+  std::vector<Term> doomed = std::move(operands);
+  while (!doomed.empty()) {
+    const Term term = std::move(doomed.back());
+    doomed.pop_back();
+    if (!term.is_last_owner()) continue;
+    // The node was made by make_shared<TermNode>, and nobody else can see it any more.
+    auto& orphans = const_cast<TermNode&>(term.node()).operands;
+    doomed.insert(doomed.end(), std::make_move_iterator(orphans.begin()), std::make_move_iterator(orphans.end()));
+    orphans.clear();
+  }
 }
 
 Term operator+(const Term& a, const Term& b) { return Term::apply(Op::add, {a, b}); }

@@ -11,6 +11,7 @@
 //
 // Time and memory linear in the number of distinct nodes, at any depth. Const members may be called by many threads.
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -42,6 +43,8 @@ class FlatTerm {
   /// REQUIRES: as many values as points. Several times faster per point than value().
   void values(std::span<const Vec3> points, std::span<double> out) const;
   [[nodiscard]] Interval interval(const Box3& box) const;
+  /// Of every step.
+  [[nodiscard]] std::vector<Interval> intervals(const Box3& box) const;
   /// One-sided where the term has a kink; NaN where it has no value. External leaves are differenced (step 1e-6).
   [[nodiscard]] Vec3 gradient(Vec3 p) const;
   /// The range of each partial derivative; infinite where the term may jump.

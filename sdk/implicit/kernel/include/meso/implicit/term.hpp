@@ -36,6 +36,8 @@ struct TermNode {
   std::vector<Term> operands{};
   std::shared_ptr<const ExternalField> external{};
   Affine field_from_world{};  ///< of an external leaf
+
+  ~TermNode();
 };
 
 class Term {
@@ -59,6 +61,7 @@ class Term {
   [[nodiscard]] bool is_constant() const { return node_->op == expr::Op::number; }
   /// Same node, not merely equal ones.
   [[nodiscard]] const TermNode* identity() const { return node_.get(); }
+  [[nodiscard]] bool is_last_owner() const { return node_.use_count() == 1; }
 
  private:
   explicit Term(std::shared_ptr<const TermNode> node) : node_(std::move(node)) {}

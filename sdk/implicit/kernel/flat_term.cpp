@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "meso/implicit/flat_term.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <unordered_map>
+
+#include "meso/implicit/interval_arithmetic.hpp"
+#include "scalar_operation.hpp"
+
+namespace meso::implicit {
+
+using expr::Op;
+
+namespace {
+
+/// The box's image under an affine map, as a box.
+Box3 image(const Affine& map, const Box3& box) {
+  Box3 result;
+  for (std::size_t row = 0; row < 3; ++row) {
+    Interval sum{map.translation[row], map.translation[row]};
+    for (std::size_t column = 0; column < 3; ++column) {
+      const double factor = map.linear(row, column);
+      if (factor == 0) continue;
+      const Interval product[] = {{factor, factor}, {box.min[column], box.max[column]}};
+      const Interval next[] = {sum, interval_of(Op::multiply, product)};
+      sum = interval_of(Op::add, next);
+    }
+    result.min[row] = sum.lo;
+    result.max[row] = sum.hi;
+  }
+  return result;
+}
+
+}  // namespace
+
+FlatTerm::FlatTerm(const Term& term) : term_(term) {
+  struct Visit {
+    const TermNode* node;
+    std::size_t next_operand;
+  };
+  std::unordered_map<const TermNode*, std::uint32_t> index_of;
+  std::vector<Visit> path{{term.identity(), 0}};
+  while (!path.empty()) {
+    Visit& visit = path.back();
+    const TermNode& node = *visit.node;
+    if (visit.next_operand < node.operands.size()) {
+      const TermNode* operand = node.operands[visit.next_operand++].identity();
+      if (!index_of.contains(operand)) path.push_back({operand, 0});
+      continue;
+    }
+    path.pop_back();
+    if (!index_of.emplace(&node, static_cast<std::uint32_t>(steps_.size())).second) continue;
+    steps_.push_back({.op = node.op,
+                      .operands = static_cast<std::uint8_t>(node.operands.size()),
+                      .first_operand = static_cast<std::uint32_t>(operands_.size()),
+                      .node = &node});
+    for (const Term& operand : node.operands) operands_.push_back(index_of.at(operand.identity()));
+  }
+}
+
+double FlatTerm::value(Vec3 p) const {
+  double result = 0;
+  values({&p, 1}, {&result, 1});
+  return result;
+}
+
+void FlatTerm::values(std::span<const Vec3> points, std::span<double> out) const {
+  assert(points.size() == out.size());
+  // So many points at once that their intermediate values stay in the cache.
+  const std::size_t batch = std::clamp<std::size_t>(16384 / steps_.size(), 1, std::max<std::size_t>(points.size(), 1));
+  std::vector<double> table(steps_.size() * batch);
+  for (std::size_t first = 0; first < points.size(); first += batch) {
+    const std::size_t count = std::min(batch, points.size() - first);
+    for (std::size_t s = 0; s < steps_.size(); ++s) {
+      const Step& step = steps_[s];
+      const TermNode& node = *step.node;
+      double* row = &table[s * batch];
+      if (step.op == Op::number) {
+        std::fill_n(row, count, node.number);
+      } else if (step.op == Op::name) {
+        for (std::size_t i = 0; i < count; ++i)
+          row[i] = node.axis == TermNode::external_axis
+                       ? node.external->value(node.field_from_world * points[first + i])
+                       : points[first + i][node.axis];
+      } else {
+        const std::span<const std::uint32_t> indices = operands(step);
+        std::array<double, 8> v{};
+        for (std::size_t i = 0; i < count; ++i) {
+          for (std::size_t k = 0; k < indices.size(); ++k) v[k] = table[indices[k] * batch + i];
+          row[i] = apply_operation(step.op, {v.data(), indices.size()});
+        }
+      }
+    }
+    std::copy_n(&table[(steps_.size() - 1) * batch], count, out.begin() + static_cast<std::ptrdiff_t>(first));
+  }
+}
+
+std::vector<Interval> FlatTerm::intervals(const Box3& box) const {
+  std::vector<Interval> value(steps_.size());
+  for (std::size_t s = 0; s < steps_.size(); ++s) {
+    const Step& step = steps_[s];
+    const TermNode& node = *step.node;
+    if (step.op == Op::number) {
+      value[s] = std::isnan(node.number) ? Interval{0, 0, true} : Interval{node.number, node.number};
+    } else if (step.op == Op::name) {
+      value[s] = node.axis == TermNode::external_axis ? node.external->interval(image(node.field_from_world, box))
+                                                      : Interval{box.min[node.axis], box.max[node.axis]};
+    } else {
+      const std::span<const std::uint32_t> indices = operands(step);
+      std::array<Interval, 8> v;
+      for (std::size_t k = 0; k < indices.size(); ++k) v[k] = value[indices[k]];
+      const bool same = step.op == Op::multiply && indices[0] == indices[1];
+      value[s] = same ? square(v[0]) : interval_of(step.op, {v.data(), indices.size()});
+    }
+  }
+  return value;
+}
+
+Interval FlatTerm::interval(const Box3& box) const { return intervals(box).back(); }
+
+}  // namespace meso::implicit
