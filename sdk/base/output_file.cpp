@@ -88,6 +88,19 @@ bool OutputFile::write(std::string_view bytes) {
   return error_ == 0;
 }
 
+bool OutputFile::write_at(std::uint64_t offset, std::string_view bytes) {
+  while (error_ == 0 && !bytes.empty()) {
+    const ssize_t written = ::pwrite(descriptor_, bytes.data(), bytes.size(), static_cast<off_t>(offset));
+    if (written >= 0) {
+      bytes.remove_prefix(static_cast<std::size_t>(written));
+      offset += static_cast<std::uint64_t>(written);
+    } else if (errno != EINTR) {
+      error_ = errno;
+    }
+  }
+  return error_ == 0;
+}
+
 bool OutputFile::commit(DiagnosticSink& sink) {
   if (::close(std::exchange(descriptor_, -1)) != 0 && error_ == 0) error_ = errno;
   if (error_ != 0) report_failure(sink, path_, error_);

@@ -47,6 +47,13 @@ TEST_F(OutputFileTest, AppearsOnlyAtCommit) {
   EXPECT_EQ(files(), 1);
 }
 
+TEST_F(OutputFileTest, OverwritesInPlaceAndGoesOnAtItsEnd) {
+  auto file = OutputFile::create(path("a"), ExistingFile::replace, sink_);
+  ASSERT_TRUE(file);
+  EXPECT_TRUE(file->write("count ??, ") && file->write_at(6, "42") && file->write("end") && file->commit(sink_));
+  EXPECT_EQ(content(path("a")), "count 42, end");
+}
+
 TEST_F(OutputFileTest, LeavesNothingWithoutCommit) {
   make("a", "old");
   {

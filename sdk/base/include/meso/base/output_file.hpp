@@ -10,6 +10,7 @@
 // written directly. A symbolic link is followed; an existing target keeps its permissions. Errors: WRITE_FAILED (also a
 // full disk), WRITE_EXISTS. Not durable against power loss (no fsync). Thread rule: one thread.
 
+#include <cstdint>
 #include <optional>
 #include <string>
 
@@ -29,6 +30,8 @@ class OutputFile final : public ByteSink {
   ~OutputFile() override;
 
   [[nodiscard]] bool write(std::string_view bytes) override;
+  /// Overwrites bytes at `offset`, for counts that are known late; write() goes on where it was. Fails on a pipe.
+  [[nodiscard]] bool write_at(std::uint64_t offset, std::string_view bytes);
 
   /// Closes and renames. False, with a diagnostic, if any write or the rename failed; then nothing is left behind.
   [[nodiscard]] bool commit(DiagnosticSink& sink);

@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "face_pass.hpp"
+
+#include <bit>
+#include <cstring>
+
+namespace meso::implicit {
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "rows of bits are read byte by byte");
+
+constexpr std::size_t chunk = 1024;
+constexpr std::size_t most_triangles = 12;  // of one cell
+
+// Signs of the nodes b - 1 and b.
+unsigned two_signs(const std::uint64_t* row, std::size_t b) {
+  const std::size_t bit = b + 63;
+  std::uint32_t bits = 0;
+  std::memcpy(&bits, reinterpret_cast<const char*>(row - 1) + bit / 8, sizeof bits);
+  return bits >> bit % 8 & 3U;
+}
+
+bool crossed(unsigned inside, unsigned edge) {
+  return ((inside >> edge_corners[edge][0] ^ inside >> edge_corners[edge][1]) & 1U) != 0;
+}
+
+}  // namespace
+
+FacePass::FacePass(const Layout& layout, const MeshSink& sink)
+    : layout_(layout),
+      sink_(sink),
+      advance_(256),
+      planes_{SignPlane(layout), SignPlane(layout)},
+      cells_(layout.nx + 1),
+      y0_(layout.nx),
+      y1_(layout.nx),
+      z0_(layout.nx),
+      z1_(layout.nx),
+      triangles_(chunk + most_triangles * (layout.nx + 2)) {
+  // Along x every row of nodes has its own count. Along y and z, the count at a cell's far edge is the number of that
+  // edge, and the near edge was counted last: both move on when the far edge is crossed.
+  constexpr std::array<std::uint8_t, 12> decides{0, 1, 2, 3, 5, 5, 7, 7, 9, 9, 11, 11};
+  for (unsigned inside = 0; inside < 256; ++inside)
+    for (unsigned e = 0; e < 12; ++e) advance_[inside].by[e] = crossed(inside, decides[e]) ? 1 : 0;
+}
+
+std::uint64_t FacePass::run(const BrickView& brick, ByteBuffer& out, const std::function<bool()>& after_row) {
+  if (brick.below == nullptr) {
+    above_->clear();
+  } else {
+    const std::uint16_t* from = brick.below->signs.data() + brick.below->last_plane;
+    auto next = brick.first_vertex - static_cast<std::uint32_t>(brick.below->last_plane_vertices);
+    above_->read(from, next);
+  }
+  std::uint64_t count = 0;
+  const std::uint16_t* from = brick.record->signs.data();
+  std::uint32_t next = brick.first_vertex;
+  auto joined = std::span(brick.record->joined);
+  for (std::size_t k = brick.first; k < brick.last; ++k) {
+    std::swap(below_, above_);
+    above_->read(from, next);
+    for (std::size_t j = 0; j <= layout_.ny; ++j) {
+      const std::size_t row = (k - brick.first) * (layout_.ny + 1) + j;
+      std::size_t cells = 0;
+      while (cells < joined.size() && joined[cells].row == row) ++cells;
+      const std::size_t before = filled_;
+      const auto sj = static_cast<std::ptrdiff_t>(j);
+      a_ = below_->at(sj - 1);
+      b_ = below_->at(sj);
+      c_ = above_->at(sj - 1);
+      d_ = above_->at(sj);
+      find_active_cells();
+      const bool plain = cells == 0 && j > 0 && j < layout_.ny && k > 0 && k < layout_.nz;
+      if (plain)
+        plain_row(j);
+      else if (active_ > 0)
+        special_row(j, k, joined.first(cells));
+      joined = joined.subspan(cells);
+      count += filled_ - before;
+      if (filled_ >= chunk) flush(out);
+      if (!after_row()) return count;
+    }
+  }
+  flush(out);
+  return count;
+}
+
+void FacePass::find_active_cells() {
+  std::uint16_t* to = cells_.data();
+  std::uint64_t any_before = 0, all_before = 0;
+  for (std::size_t w = 0; w < layout_.words; ++w) {
+    const std::uint64_t any = a_[w] | b_[w] | c_[w] | d_[w], all = a_[w] & b_[w] & c_[w] & d_[w];
+    std::uint64_t active = (any | any << 1 | any_before >> 63) & ~(all & (all << 1 | all_before >> 63));
+    any_before = any;
+    all_before = all;
+    for (; active != 0; active &= active - 1)
+      *to++ = static_cast<std::uint16_t>(64 * w + static_cast<std::size_t>(std::countr_zero(active)));
+  }
+  active_ = static_cast<std::size_t>(to - cells_.data());
+}
+
+unsigned FacePass::corners_inside(std::size_t cell) const {
+  return two_signs(a_, cell) | two_signs(b_, cell) << 2 | two_signs(c_, cell) << 4 | two_signs(d_, cell) << 6;
+}
+
+void FacePass::plain_row(std::size_t j) {
+  const RowNumbers &a = below_->numbers(j - 1), &b = below_->numbers(j), &c = above_->numbers(j - 1),
+                   &d = above_->numbers(j);
+  std::array<std::uint32_t, 12> ids{a.x, b.x, c.x, d.x, b.y - 1, b.y, d.y - 1, d.y, c.z - 1, c.z, d.z - 1, d.z};
+  IndexTriangle* to = triangles_.data() + filled_;
+  for (std::size_t n = 0; n < active_; ++n) {
+    const std::size_t cell = cells_[n];
+    const unsigned inside = corners_inside(cell);
+    const PlainCell& plain = table_.plain(inside);
+    const auto put = [&](std::size_t t) {
+      const auto& edges = plain.triangles[t];
+      to[t] = {ids[edges[0]], ids[edges[1]], ids[edges[2]]};
+    };
+    for (std::size_t t = 0; t < 4; ++t) put(t);
+    if (plain.count > 4) put(4);
+    to += plain.count;
+    const Advance& advance = advance_[inside];
+    for (std::size_t e = 0; e < 12; ++e) ids[e] += advance.by[e];
+  }
+  filled_ = static_cast<std::size_t>(to - triangles_.data());
+}
+
+void FacePass::flush(ByteBuffer& out) {
+  sink_.encode_triangles({triangles_.data(), filled_}, out);
+  filled_ = 0;
+}
+
+}  // namespace meso::implicit

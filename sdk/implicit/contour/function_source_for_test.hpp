@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// A field given by any function, for tests.
+
+#include <functional>
+#include <memory>
+
+#include "meso/implicit/grid_source.hpp"
+
+namespace meso::implicit {
+
+class FunctionSource final : public GridSource {
+ public:
+  using Function = std::function<double(Vec3)>;
+
+  FunctionSource(Grid grid, Function f, bool signs_only = false)
+      : grid_(grid), f_(std::move(f)), signs_only_(signs_only) {}
+
+  [[nodiscard]] const Grid& grid() const override { return grid_; }
+  [[nodiscard]] bool signs_only() const override { return signs_only_; }
+  [[nodiscard]] std::unique_ptr<GridSampler> sampler() const override { return std::make_unique<Sampler>(*this); }
+
+ private:
+  class Sampler final : public GridSampler {
+   public:
+    explicit Sampler(const FunctionSource& source) : source_(source) {}
+    void begin_slab(std::int32_t, std::int32_t) override {}
+    void row(std::int32_t j, std::int32_t k, float* values, std::uint64_t* inside) override {
+      const std::int32_t n = source_.grid_.nodes[0];
+      for (std::int32_t w = 0; w <= (n - 1) / 64; ++w) inside[w] = 0;
+      for (std::int32_t i = 0; i < n; ++i) {
+        const double v = source_.f_(source_.grid_.node(i, j, k));
+        values[i] = source_.signs_only_ ? 1.0F : static_cast<float>(v);
+        if (v < 0) inside[i / 64] |= std::uint64_t{1} << i % 64;
+      }
+    }
+    void values_at(std::span<const Vec3> points, double* out) override {
+      for (const Vec3& p : points) *out++ = source_.f_(p);
+    }
+
+   private:
+    const FunctionSource& source_;
+  };
+
+  Grid grid_;
+  Function f_;
+  bool signs_only_;
+};
+
+}  // namespace meso::implicit

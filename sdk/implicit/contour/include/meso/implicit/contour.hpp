@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// From samples on a grid to the closed surface around the inside, in constant memory.
+//
+//   TriangleMesh mesh;
+//   MemoryMeshSink sink(mesh);   // or a file: make_mesh_writer() in exporters/mesh
+//   const std::optional<ContourReport> report = contour(*source, sink, {}, run, diagnostics);
+//
+// Marching cubes in two passes that evaluate each sample once: vertices, then triangles. The surface is closed, its
+// edges lie in two triangles each, triangles face outward, and none is degenerate. Where the inside reaches the box,
+// the surface runs exactly in the box's planes. Vertices stand on edges of the grid, where the linear interpolant of
+// the two samples is zero; volume and area converge with the square of the spacing. Samples without a value are
+// outside.
+//
+// Equal bytes for any number of threads. Memory: some planes of samples a thread, and 2 bytes for every x-crossing.
+// Errors: LIMIT_GRID, LIMIT_GRID_MEMORY, LIMIT_VERTICES, LIMIT_TIME; cancelled work returns nothing and reports
+// nothing, nor does a sink that failed. An empty surface is a result. Thread rule: blocks; uses `jobs` threads.
+
+#include <cstdint>
+#include <optional>
+
+#include "meso/base/diagnostic.hpp"
+#include "meso/base/mesh_sink.hpp"
+#include "meso/base/run_options.hpp"
+#include "meso/implicit/grid_source.hpp"
+
+namespace meso::implicit {
+
+struct ContourOptions {};
+
+struct ContourReport {
+  std::uint64_t points = 0, triangles = 0;
+  std::int64_t euler = 0;       ///< points - edges + triangles
+  std::uint64_t undefined = 0;  ///< crossed edges one end of which has no value
+  double seconds = 0;
+};
+
+[[nodiscard]] std::optional<ContourReport> contour(const GridSource& source, MeshSink& sink,
+                                                   const ContourOptions& options, const RunOptions& run,
+                                                   DiagnosticSink& diagnostics);
+
+}  // namespace meso::implicit

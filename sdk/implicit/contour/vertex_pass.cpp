@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "vertex_pass.hpp"
+
+#include <algorithm>
+
+#include "case_table.hpp"
+#include "pad_vertices.hpp"
+
+namespace meso::implicit {
+namespace {
+
+constexpr std::size_t chunk = 512;
+
+// Where the linear interpolant is zero, from v0 (t = 0) to v1, kept off the ends: within a thousandth of a cell no
+// accuracy is lost, and no triangle degenerates. Half way where an end has no value.
+float crossing(float v0, float v1) {
+  constexpr float margin = 1e-3F;
+  float t = v0 / (v0 - v1);
+  t = t < margin ? margin : t;
+  t = t > 1 - margin ? 1 - margin : t;
+  return t == t ? t : 0.5F;
+}
+
+double between(double a, double b, float t) { return a + static_cast<double>(t) * (b - a); }
+
+// Positions of set bits, ascending; returns where they end.
+std::uint16_t* append_bits(std::uint64_t bits, std::size_t w, std::uint16_t* to) {
+  for (; bits != 0; bits &= bits - 1)
+    *to++ = static_cast<std::uint16_t>(64 * w + static_cast<std::size_t>(std::countr_zero(bits)));
+  return to;
+}
+
+unsigned corners_inside(const CellRows& rows, std::size_t b) {
+  unsigned inside = 0, corner = 0;
+  for (const SampleRow* row : {&rows.a, &rows.b, &rows.c, &rows.d})
+    for (const std::ptrdiff_t i : {static_cast<std::ptrdiff_t>(b) - 1, static_cast<std::ptrdiff_t>(b)})
+      inside |= static_cast<unsigned>(row->inside[i >> 6] >> (i & 63) & 1U) << corner++;
+  return inside;
+}
+
+}  // namespace
+
+VertexPass::VertexPass(const Layout& layout, std::unique_ptr<GridSampler> sampler, const MeshSink& sink)
+    : layout_(layout),
+      sampler_(std::move(sampler)),
+      sink_(sink),
+      rows_(layout),
+      x_(layout.nx + 1),
+      y_(layout.nx + 1),
+      z_(layout.nx + 1),
+      t_(layout.nx + 1),
+      points_(chunk + 4 * (layout.nx + 1)) {}
+
+BrickRecord VertexPass::run(std::size_t first, std::size_t last, ByteBuffer& out,
+                            const std::function<bool()>& after_row) {
+  BrickRecord record;
+  signs_.clear();
+  const bool continues = first > 0 && sampled_ == first;  // this thread did the brick before
+  const std::size_t from = continues || first == 0 ? first : first - 1;
+  sampler_->begin_slab(static_cast<std::int32_t>(from), static_cast<std::int32_t>(std::min(last, layout_.nz)));
+  if (!continues) joined_.begin_brick();
+  if (from < first) sample_plane_below(from);
+  for (std::size_t k = first; k < last; ++k) {
+    joined_.begin_plane();
+    record.last_plane = signs_.size();
+    const std::uint64_t before = record.vertices;
+    for (std::size_t j = 0; j <= layout_.ny; ++j) {
+      const auto cell_row = static_cast<std::uint32_t>((k - first) * (layout_.ny + 1) + j);
+      row(j, k, cell_row, record);
+      if (filled_ >= chunk) flush(out);
+      if (!after_row()) return record;
+    }
+    record.last_plane_vertices = record.vertices - before;
+    sampled_ = k + 1;
+  }
+  flush(out);
+  record.signs.assign(signs_.begin(), signs_.end());
+  return record;
+}
+
+void VertexPass::sample_plane_below(std::size_t k) {
+  joined_.begin_plane();
+  for (std::size_t j = 0; j < layout_.ny; ++j) {
+    const SampleRow& d = rows_.fresh();
+    sampler_->row(static_cast<std::int32_t>(j), static_cast<std::int32_t>(k), d.values, d.inside);
+    const CellRows rows{{}, {}, rows_.at(static_cast<std::ptrdiff_t>(j) - 1), d};
+    for (std::size_t w = 0; w < layout_.words; ++w) joined_.find_across_z(rows, static_cast<std::uint32_t>(j), w);
+    rows_.replace(j);
+  }
+}
+
+void VertexPass::row(std::size_t j, std::size_t k, std::uint32_t cell_row, BrickRecord& record) {
+  const auto sj = static_cast<std::ptrdiff_t>(j);
+  const SampleRow& none = rows_.outside();
+  CellRows rows{none, none, none, none};
+  if (k == layout_.nz) {
+    rows.a = rows_.at(sj - 1);
+    rows.b = rows_.at(sj);
+  } else {
+    rows.c = rows_.at(sj - 1);
+    if (k > 0 && j > 0) rows.a = rows_.replaced();
+    if (k > 0) rows.b = rows_.at(sj);
+    if (j < layout_.ny) {
+      rows.d = rows_.fresh();
+      sampler_->row(static_cast<std::int32_t>(j), static_cast<std::int32_t>(k), rows.d.values, rows.d.inside);
+    }
+  }
+  joined_.begin_row();
+  find_crossings(rows, j, k);
+  const std::size_t old_cells = record.joined.size();
+  joined_.collect(static_cast<std::uint32_t>(j), cell_row, record.joined);
+  add_vertices(rows, j, k);
+  RowCounts counts{static_cast<std::uint16_t>(nx_), static_cast<std::uint16_t>(ny_), static_cast<std::uint16_t>(nz_),
+                   0};
+  if (record.joined.size() > old_cells)
+    counts.centre = add_centres(rows, j, k, std::span(record.joined).subspan(old_cells));
+  append_row(signs_, counts, x_.data(), rows.d.inside, layout_.words);
+  record.vertices += counts.total();
+  if (k < layout_.nz && j < layout_.ny) rows_.replace(j);
+}
+
+void VertexPass::find_crossings(const CellRows& rows, std::size_t j, std::size_t k) {
+  std::uint16_t *x_end = x_.data(), *y_end = y_.data(), *z_end = z_.data();
+  const PadVertices pads(layout_, j, k);
+  for (std::size_t w = 0; w < layout_.words; ++w) {
+    const std::uint64_t d = rows.d.inside[w];
+    const std::uint64_t x = d ^ (d << 1 | rows.d.inside[static_cast<std::ptrdiff_t>(w) - 1] >> 63);
+    const std::uint64_t y = d ^ rows.c.inside[w], z = d ^ rows.b.inside[w];
+    if ((x | y | z) == 0) continue;
+    x_end = append_bits(x, w, x_end);
+    y_end = append_bits(y & pads.y_mask(w), w, y_end);
+    z_end = append_bits(z & pads.z_mask(w), w, z_end);
+    if ((x & y) != 0) joined_.find_across_z(rows, static_cast<std::uint32_t>(j), w);
+    if ((x & z) != 0 || (y & z) != 0) joined_.find_across_xy(rows, w);
+  }
+  nx_ = static_cast<std::size_t>(x_end - x_.data());
+  ny_ = static_cast<std::size_t>(y_end - y_.data());
+  nz_ = static_cast<std::size_t>(z_end - z_.data());
+}
+
+void VertexPass::add_vertices(const CellRows& rows, std::size_t j, std::size_t k) {
+  const auto sj = static_cast<std::ptrdiff_t>(j), sk = static_cast<std::ptrdiff_t>(k);
+  const double y = layout_.y(sj), z = layout_.z(sk), y0 = layout_.y(sj - 1), z0 = layout_.z(sk - 1);
+  const float* const d = rows.d.values;
+  Vec3* to = points_.data() + filled_;
+  for (std::size_t n = 0; n < nx_; ++n) {
+    const auto b = static_cast<std::ptrdiff_t>(x_[n]);
+    *to++ = {between(layout_.x(b - 1), layout_.x(b), crossing(d[b - 1], d[b])), y, z};
+  }
+  for (std::size_t n = 0; n < ny_; ++n)
+    *to++ = {layout_.x(y_[n]), between(y0, y, crossing(rows.c.values[y_[n]], d[y_[n]])), z};
+  for (std::size_t n = 0; n < nz_; ++n)
+    *to++ = {layout_.x(z_[n]), y, between(z0, z, crossing(rows.b.values[z_[n]], d[z_[n]]))};
+  filled_ += nx_ + ny_ + nz_;
+}
+
+std::uint16_t VertexPass::add_centres(const CellRows& rows, std::size_t j, std::size_t k,
+                                      std::span<const JoinedCell> cells) {
+  std::uint16_t count = 0;
+  for (const JoinedCell& cell : cells) {
+    const unsigned edges = CaseTable::get().at(corners_inside(rows, cell.cell), cell.joined).centre_edges;
+    if (edges == 0) continue;
+    ++count;
+    const auto corner = [&](unsigned c) {
+      const auto i = static_cast<std::ptrdiff_t>(cell.cell) - 1 + (c & 1U);
+      const SampleRow& row = c < 2 ? rows.a : c < 4 ? rows.b : c < 6 ? rows.c : rows.d;
+      return std::pair{Vec3{layout_.x(i), layout_.y(static_cast<std::ptrdiff_t>(j) - 1 + (c >> 1 & 1U)),
+                            layout_.z(static_cast<std::ptrdiff_t>(k) - 1 + (c >> 2))},
+                       row.values[i]};
+    };
+    Vec3 sum;
+    for (unsigned e = 0; e < 12; ++e) {
+      if ((edges >> e & 1U) == 0) continue;
+      const auto [p0, v0] = corner(edge_corners[e][0]);
+      const auto [p1, v1] = corner(edge_corners[e][1]);
+      sum += p0 + static_cast<double>(crossing(v0, v1)) * (p1 - p0);
+    }
+    points_[filled_++] = sum / std::popcount(edges);
+  }
+  return count;
+}
+
+void VertexPass::flush(ByteBuffer& out) {
+  sink_.encode_points({points_.data(), filled_}, out);
+  filled_ = 0;
+}
+
+}  // namespace meso::implicit
