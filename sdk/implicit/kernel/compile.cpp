@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "plan.hpp"
+#include "separate.hpp"
 
 namespace meso::implicit {
 namespace {
@@ -67,7 +68,8 @@ std::unique_ptr<GridSampler> Source::sampler() const { return std::make_unique<S
 
 std::unique_ptr<GridSource> compile(const Term& term, const Grid& grid, const CompileOptions& options) {
   Graph graph;
-  const Graph::Id root = graph.from_term(term);
+  Graph::Id root = graph.from_term(term);
+  if (!options.strict_math) root = separate(graph, root, grid);
   return std::make_unique<Source>(std::move(graph), root, grid, row_kernels(options.instruction_set),
                                   options.max_table_bytes);
 }
