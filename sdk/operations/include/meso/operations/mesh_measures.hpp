@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// Numbers that describe a triangle mesh. Millimetres.
+
+#include <cstdint>
+
+#include "meso/base/vec.hpp"
+
+namespace meso::operations {
+
+struct MeshMeasures {
+  double volume = 0, area = 0;
+  std::uint64_t points = 0, triangles = 0;
+  std::uint64_t components = 0;  ///< of triangles that share points; closed ones may lie inside others
+  /// Every edge is run through as often in one direction as in the other; wrong with a chance of 2^-64.
+  bool closed = false;
+  std::int64_t euler = 0;  ///< points - edges + triangles, three edges for two triangles
+  Box3 box;                ///< empty without points
+};
+
+}  // namespace meso::operations

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// A program of the command language (docs/sdf.md) carried out: field, box, grid, mesh, file.
+//
+//   const std::vector<std::string> words{"-s", "60^3", "tpms.gyroid", "-o", "gyroid.ply"};
+//   const auto program = sdf::parse_program(sdf::words_of_arguments(words), {.read_text = operations::read_text},
+//   sink); const auto report = operations::run_sdf(*program, {.measure = true}, sink); report->measures->volume   //
+//   about 4
+//
+// Output files appear whole or not at all. An empty solid is a file without triangles, and SDF_EMPTY. Thread rule:
+// calls are independent of each other; each uses RunOptions::jobs threads.
+
+#include <optional>
+#include <string>
+
+#include "meso/base/output_file.hpp"
+#include "meso/base/run_options.hpp"
+#include "meso/implicit/grid.hpp"
+#include "meso/operations/mesh_measures.hpp"
+#include "meso/sdf/program.hpp"
+
+namespace meso::operations {
+
+struct SdfOptions {
+  /// Volume, area, pieces: about as much work again, and 16 bytes of memory a vertex.
+  bool measure = false;
+  bool strict_math = false;         ///< formulas as written, none regrouped
+  bool polish = false;              ///< vertices on the surface itself, not on the samples' interpolant
+  bool no_slivers = false;          ///< very narrow triangles collapsed
+  bool double_coordinates = false;  ///< of .ply
+  bool ascii = false;               ///< .ply and .stl
+  ExistingFile existing = ExistingFile::replace;
+  RunOptions run{};
+};
+
+struct SdfReport {
+  implicit::Grid grid;
+  std::uint64_t points = 0, triangles = 0;
+  std::int64_t euler = 0;
+  std::uint64_t undefined = 0;  ///< edges of the grid that the surface crosses where the field has no value
+  std::uint64_t bytes = 0;
+  std::optional<MeshMeasures> measures;
+  struct {
+    double read = 0, contour = 0, total = 0;
+  } seconds;  ///< wall-clock; contouring includes writing
+};
+
+[[nodiscard]] std::optional<SdfReport> run_sdf(const sdf::Program& program, const SdfOptions& options,
+                                               DiagnosticSink& sink);
+
+/// What programs include is read so.
+[[nodiscard]] sdf::ProgramOptions::Text read_text(const std::string& path);
+
+}  // namespace meso::operations
