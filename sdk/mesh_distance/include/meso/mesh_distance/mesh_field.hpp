@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// The signed distance to a triangle mesh, negative inside, as a field.
+//
+//   std::shared_ptr<const MeshField> field = MeshField::make(mesh, "part.ply", {}, sink);
+//   field->value({0, 0, 0});                      // -1 in a ball of radius 1
+//   Term solid = Term::external(field);           // composes with every other field
+//
+// Units: those of the mesh. The distance is exact up to rounding (1e-15 of the mesh's size, 1e-12 of itself), zero
+// exactly on the surface and nowhere else.
+//
+// Inside is decided without rounding where the mesh is closed (every edge used as often in one direction as in the
+// other; it may cross itself, overlap, hold cavities or be inside out): a point is inside if the surface encloses it a
+// number of times that is not zero. In any other mesh a point is inside if it lies in the mesh's box and the surface is
+// seen around more than half of all directions (the winding number of Jacobson 2013 by the expansion of Barill 2018);
+// there the field jumps where a hole is bridged, so that lipschitz() is infinite. Walls inside a body, where it
+// overlaps itself, count as surface for the distance.
+//
+// Errors: MESH_EMPTY, MESH_COORDINATES, LIMIT_MEMORY, LIMIT_TIME, CANCELLED. Warnings: MESH_NOT_CLOSED, MESH_TURNED,
+// MESH_INSIDE_OUT, MESH_REPEATED. Cost: 0.25 s and 150 bytes a triangle for a million; then about 1 us a distance near
+// the surface, 10 us far from it. Thread rule: immutable, safe to share; make() uses options.jobs threads.
+
+#include <memory>
+#include <string>
+
+#include "meso/base/diagnostic.hpp"
+#include "meso/base/run_options.hpp"
+#include "meso/base/triangle_mesh.hpp"
+#include "meso/implicit/external_field.hpp"
+#include "meso/mesh_distance/mesh_quality.hpp"
+
+namespace meso::implicit {
+
+class SignedMesh;
+
+class MeshField final : public ExternalField {
+ public:
+  /// `name` stands in diagnostics. Empty after an error. REQUIRES: triangles refer to points that exist.
+  [[nodiscard]] static std::shared_ptr<const MeshField> make(const TriangleMesh& mesh, const std::string& name,
+                                                             const RunOptions& options, DiagnosticSink& sink);
+  ~MeshField() override;
+
+  [[nodiscard]] const MeshQuality& quality() const;
+  [[nodiscard]] Vec3 closest_point(Vec3 p) const;
+
+  [[nodiscard]] double value(Vec3 p) const override;
+  [[nodiscard]] Interval interval(const Box3& box) const override;
+  [[nodiscard]] double lipschitz() const override;
+  [[nodiscard]] Box3 bounds(double level) const override;
+
+  /// Signs of all nodes are found at once, distances when a row is asked for. The sign of a node is the same for every
+  /// band, and that of value() where `field_from_grid` only scales and shifts. REQUIRES: the map can be inverted.
+  [[nodiscard]] std::unique_ptr<Prepared> prepare(const Grid& grid, const Affine& field_from_grid,
+                                                  double band) const override;
+
+ private:
+  explicit MeshField(std::shared_ptr<const SignedMesh> mesh);
+  std::shared_ptr<const SignedMesh> mesh_;
+};
+
+}  // namespace meso::implicit

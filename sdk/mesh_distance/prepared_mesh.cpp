@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "prepared_mesh.hpp"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cassert>
+#include <optional>
+
+#include "clean_mesh.hpp"
+#include "near_blocks.hpp"
+#include "open_signs.hpp"
+#include "row_signs.hpp"
+
+namespace meso::implicit {
+namespace {
+
+/// Triangles and nodes in one space where rows run along x. A map that only scales and shifts leaves the triangles
+/// where they are and moves the nodes, which keeps signs those of the points that are asked elsewhere; any other map
+/// moves the triangles to the grid.
+class Alignment {
+ public:
+  Alignment(const Grid& grid, const Affine& field_from_grid) : field_from_grid_(field_from_grid) {
+    assert(determinant(field_from_grid.linear) != 0);
+    const auto& m = field_from_grid.linear.m;
+    in_field_ = m[1] == 0 && m[2] == 0 && m[3] == 0 && m[5] == 0 && m[6] == 0 && m[7] == 0;
+    for (std::size_t a = 0; a < 3; ++a) reversed_[a] = in_field_ && m[4 * a] < 0;
+    size_ = grid.nodes;
+    ticks_.emplace(GridTicks{ticks(grid, 0), ticks(grid, 1), ticks(grid, 2)});
+  }
+
+  [[nodiscard]] const GridTicks& ticks() const { return *ticks_; }
+  [[nodiscard]] bool in_field() const { return in_field_; }
+  [[nodiscard]] bool reversed(std::size_t axis) const { return reversed_[axis]; }
+  /// Node from tick, and the other way round.
+  [[nodiscard]] std::int32_t flipped(std::size_t axis, std::int32_t i) const {
+    return reversed_[axis] ? size_[axis] - 1 - i : i;
+  }
+  [[nodiscard]] std::vector<Triangle> moved_to_grid(std::span<const Triangle> triangles) const {
+    const Mat3 grid_from_field = inverse(field_from_grid_.linear);
+    std::vector<Triangle> out(triangles.size());
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, out.size(), 1 << 14), [&](const auto& range) {
+      for (std::size_t i = range.begin(); i != range.end(); ++i) {
+        for (std::size_t c = 0; c < 3; ++c)
+          out[i][c] = without_specks(grid_from_field * (triangles[i][c] - field_from_grid_.translation));
+      }
+    });
+    return out;
+  }
+
+ private:
+  [[nodiscard]] Ticks ticks(const Grid& grid, std::size_t axis) const {
+    std::vector<double> values(static_cast<std::size_t>(size_[axis]));
+    for (std::int32_t t = 0; t < size_[axis]; ++t) {
+      Vec3 p;
+      p[axis] = grid.coordinate(axis, flipped(axis, t));
+      values[static_cast<std::size_t>(t)] = without_specks(in_field_ ? field_from_grid_ * p : p)[axis];
+    }
+    return Ticks(std::move(values));
+  }
+  static Mat3 inverse(const Mat3& m) {
+    const Vec3 a = m.column(0), b = m.column(1), c = m.column(2);
+    const double scale = 1 / determinant(m);
+    return transposed(Mat3::from_columns(scale * cross(b, c), scale * cross(c, a), scale * cross(a, b)));
+  }
+
+  Affine field_from_grid_;
+  bool in_field_ = false;
+  std::array<bool, 3> reversed_{};
+  std::array<std::int32_t, 3> size_{};
+  std::optional<GridTicks> ticks_;
+};
+
+/// What all threads share.
+struct Shared {
+  Shared(std::shared_ptr<const SignedMesh> signed_mesh, const Grid& nodes, const Affine& map, double largest)
+      : mesh(std::move(signed_mesh)), grid(nodes), field_from_grid(map), band(largest), alignment(nodes, map) {
+    std::vector<Triangle> moved;
+    if (!alignment.in_field()) moved = alignment.moved_to_grid(mesh->tree().triangles());
+    const std::span<const Triangle> triangles = alignment.in_field() ? mesh->tree().triangles() : moved;
+    signs.emplace(triangles, alignment.ticks());
+    if (!mesh->quality().closed) {
+      decide_by_winding_number(*signs, triangles, alignment.ticks(), [this](auto i, auto j, auto k) {
+        return mesh->is_inside_open(point(alignment.flipped(0, i), alignment.flipped(1, j), alignment.flipped(2, k)));
+      });
+    }
+    if (band > 0 && band < HUGE_VAL) near.emplace(*mesh, grid, field_from_grid, band);
+  }
+  [[nodiscard]] Vec3 point(std::int32_t i, std::int32_t j, std::int32_t k) const {
+    return without_specks(field_from_grid * grid.node(i, j, k));
+  }
+
+  std::shared_ptr<const SignedMesh> mesh;
+  Grid grid;
+  Affine field_from_grid;
+  double band;
+  Alignment alignment;
+  std::optional<RowSigns> signs;
+  std::optional<NearBlocks> near;
+};
+
+class Rows final : public ExternalRows {
+ public:
+  explicit Rows(std::shared_ptr<const Shared> shared) : shared_(std::move(shared)) {}
+
+  void row(std::int32_t j, std::int32_t k, std::int32_t first, std::int32_t last, double* out) override {
+    const Alignment& alignment = shared_->alignment;
+    const std::size_t row = alignment.ticks().row(alignment.flipped(1, j), alignment.flipped(2, k));
+    write_signs(row, first, last, out);
+    if (shared_->band > 0) write_distances(j, k, first, last, out);
+    for (const RowSigns::Touch& t : shared_->signs->touches(row)) {
+      const std::int32_t i = alignment.flipped(0, t.node);
+      if (first <= i && i < last) out[i - first] = 0;
+    }
+  }
+
+ private:
+  /// Inside or outside, beyond every band.
+  void write_signs(std::size_t row, std::int32_t first, std::int32_t last, double* out) const {
+    const double far = shared_->band < HUGE_VAL && shared_->band > 0 ? 2 * shared_->band : 1;
+    std::fill(out, out + (last - first), far);
+    const std::span<const RowSigns::Change> changes = shared_->signs->changes(row);
+    for (std::size_t c = 0; c < changes.size(); ++c) {
+      if (changes[c].winding == 0) continue;
+      // Ticks [begin, end) are inside; as nodes, their order may be the other way round.
+      std::int32_t begin = changes[c].node;
+      std::int32_t end = c + 1 < changes.size() ? changes[c + 1].node : shared_->grid.nodes[0];
+      if (shared_->alignment.reversed(0))
+        std::tie(begin, end) = std::pair(shared_->grid.nodes[0] - end, shared_->grid.nodes[0] - begin);
+      for (std::int32_t i = std::max(begin, first); i < std::min(end, last); ++i) out[i - first] = -far;
+    }
+  }
+
+  void write_distances(std::int32_t j, std::int32_t k, std::int32_t first, std::int32_t last, double* out) {
+    for (std::int32_t i = first; i < last; ++i) {
+      if (shared_->near && !shared_->near->contains(i, j, k)) {
+        i |= NearBlocks::edge - 1;
+        continue;
+      }
+      const SignedMesh::Value at = shared_->mesh->distance(shared_->point(i, j, k), hint_);
+      hint_ = at.triangle;
+      out[i - first] = SignedMesh::with_sign(at.distance, out[i - first] < 0 ? -1 : 1);
+    }
+  }
+
+  std::shared_ptr<const Shared> shared_;
+  std::uint32_t hint_ = TriangleTree::no_triangle;
+};
+
+class PreparedMesh final : public ExternalField::Prepared {
+ public:
+  explicit PreparedMesh(std::shared_ptr<const Shared> shared) : shared_(std::move(shared)) {}
+  [[nodiscard]] std::unique_ptr<ExternalRows> make_rows() const override { return std::make_unique<Rows>(shared_); }
+
+ private:
+  std::shared_ptr<const Shared> shared_;
+};
+
+}  // namespace
+
+std::unique_ptr<ExternalField::Prepared> prepare_mesh(std::shared_ptr<const SignedMesh> mesh, const Grid& grid,
+                                                      const Affine& field_from_grid, double band) {
+  return std::make_unique<PreparedMesh>(std::make_shared<const Shared>(std::move(mesh), grid, field_from_grid, band));
+}
+
+}  // namespace meso::implicit

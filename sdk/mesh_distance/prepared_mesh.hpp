@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// A mesh on one grid: signs of all nodes, and which blocks of nodes come near enough to the surface for distances.
+
+#include "meso/implicit/external_field.hpp"
+#include "signed_mesh.hpp"
+
+namespace meso::implicit {
+
+[[nodiscard]] std::unique_ptr<ExternalField::Prepared> prepare_mesh(std::shared_ptr<const SignedMesh> mesh,
+                                                                    const Grid& grid, const Affine& field_from_grid,
+                                                                    double band);
+
+}  // namespace meso::implicit

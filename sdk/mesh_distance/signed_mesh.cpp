@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "signed_mesh.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#include "clean_mesh.hpp"
+
+namespace meso::implicit {
+
+SignedMesh::SignedMesh(TriangleTree tree, const MeshQuality& quality) : tree_(std::move(tree)), quality_(quality) {
+  if (!quality_.closed) winding_ = WindingNumber(tree_);
+}
+
+SignedMesh::Value SignedMesh::distance(Vec3 p, std::uint32_t hint) const {
+  const TriangleTree::Nearest nearest = tree_.nearest(p, hint);
+  return {std::sqrt(nearest.squared_distance), nearest.triangle};
+}
+
+bool SignedMesh::is_in_box(Vec3 p) const {
+  const Box3& b = tree_.box();
+  return b.min.x <= p.x && p.x <= b.max.x && b.min.y <= p.y && p.y <= b.max.y && b.min.z <= p.z && p.z <= b.max.z;
+}
+
+bool SignedMesh::is_inside_open(Vec3 p) const { return is_in_box(p) && std::abs(winding_.at(tree_, p)) > 0.5; }
+
+int SignedMesh::sign(Vec3 p) const {
+  if (!is_in_box(p)) return 1;
+  const Winding winding = tree_.winding(p);
+  if (winding.on_surface) return 0;
+  const bool inside = quality_.closed ? winding.number != 0 : is_inside_open(p);
+  return inside ? -1 : 1;
+}
+
+double SignedMesh::with_sign(double distance, int sign) {
+  // Rounding may bring a point that is beside the surface onto it, or the other way round; the sign is right.
+  return sign == 0 ? 0 : sign * std::max(distance, std::numeric_limits<double>::min());
+}
+
+double SignedMesh::value(Vec3 p) const {
+  p = without_specks(p);
+  return with_sign(distance(p, TriangleTree::no_triangle).distance, sign(p));
+}
+
+}  // namespace meso::implicit
