@@ -6,6 +6,7 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <new>
+#include <string_view>
 
 #include "run.hpp"
 #include "stop.hpp"
@@ -28,7 +29,23 @@ void add_verbs(CLI::App& app, meso::cli::Run& run) {
 #if defined(MESO_CLI_BREP) && defined(MESO_CLI_RENDER)
   add_render(app, run);
 #endif
+#ifdef MESO_CLI_IMPLICIT
+  add_sdf(app);
+#endif
   add_formats(app, run);
+}
+
+/// The one verb whose words are not flags and files.
+bool takes_words([[maybe_unused]] int argc, [[maybe_unused]] char** argv, [[maybe_unused]] meso::cli::Run& run) {
+#ifdef MESO_CLI_IMPLICIT
+  if (argc > 1 && std::string_view(argv[1]) == "sdf") {
+    run.action = [&run, words = std::vector<std::string>(argv + 2, argv + argc)] {
+      return meso::cli::sdf_verb(run, words);
+    };
+    return true;
+  }
+#endif
+  return false;
 }
 
 int run_verb(meso::cli::Run& run) {
@@ -53,11 +70,13 @@ int main(int argc, char** argv) {
   app.failure_message(CLI::FailureMessage::simple);
   meso::cli::Run run;
   add_verbs(app, run);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& e) {
-    const int code = app.exit(e);
-    return code == 0 ? 0 : 2;
+  if (!takes_words(argc, argv, run)) {
+    try {
+      app.parse(argc, argv);
+    } catch (const CLI::ParseError& e) {
+      const int code = app.exit(e);
+      return code == 0 ? 0 : 2;
+    }
   }
   const int code = run_verb(run);
   if (std::fflush(stdout) == 0 || code != 0) return code;

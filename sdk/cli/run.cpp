@@ -68,7 +68,7 @@ void add_mesh_flags(CLI::App& verb, Flags& flags) {
   verb.add_option("--angle", flags.angle, "Largest angle between neighbouring triangles, e.g. 0.5rad or 20deg")
       ->type_name("ANG");
 }
-void add_limit_flags(CLI::App& verb, Flags& flags) {
+void add_work_flags(CLI::App& verb, Flags& flags) {
   verb.add_option("--jobs", flags.jobs, "Threads; 0 is one per core. Output bytes do not depend on it")->type_name("N");
   verb.add_option("--timeout", flags.timeout, "Give up after this many seconds")
       ->type_name("S")
@@ -77,10 +77,13 @@ void add_limit_flags(CLI::App& verb, Flags& flags) {
         return seconds && *seconds > 0 && *seconds <= 1e9 ? "" : "'" + text + "' is not a number of seconds up to 1e9";
       });
   verb.add_option("--max-memory", flags.max_memory, "Give up beyond this much memory, e.g. 2G")->type_name("SIZE");
-  verb.add_option("--max-cells", flags.max_cells, "Refuse patterns with more cells (10000000)")->type_name("N");
   verb.add_option("--progress", flags.progress, "auto, bar, json or none")
       ->type_name("STYLE")
       ->check(CLI::IsMember({"auto", "bar", "json", "none"}));
+}
+void add_limit_flags(CLI::App& verb, Flags& flags) {
+  add_work_flags(verb, flags);
+  verb.add_option("--max-cells", flags.max_cells, "Refuse patterns with more cells (10000000)")->type_name("N");
 }
 
 RunOptions Run::options() {

@@ -45,7 +45,8 @@ void add_json_flag(CLI::App& verb, Flags& flags);
 void add_no_clobber_flag(CLI::App& verb, Flags& flags);
 void add_engine_flag(CLI::App& verb, Flags& flags);
 void add_mesh_flags(CLI::App& verb, Flags& flags);   ///< --deflection --angle
-void add_limit_flags(CLI::App& verb, Flags& flags);  ///< --jobs --timeout --max-memory --max-cells --progress
+void add_work_flags(CLI::App& verb, Flags& flags);   ///< --jobs --timeout --max-memory --progress
+void add_limit_flags(CLI::App& verb, Flags& flags);  ///< these and --max-cells
 
 /// One call of one verb.
 class Run {
@@ -99,5 +100,7 @@ void add_convert(CLI::App& app, Run& run);
 void add_compare(CLI::App& app, Run& run);
 void add_verify(CLI::App& app, Run& run);
 void add_render(CLI::App& app, Run& run);
+void add_sdf(CLI::App& app);  ///< for the list of verbs only
+int sdf_verb(Run& run, const std::vector<std::string>& words);
 
 }  // namespace meso::cli

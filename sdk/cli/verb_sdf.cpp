@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: Apache-2.0
+// The words behind `meso sdf` are a language of their own (docs/sdf.md) and reach it unparsed.
+
+#include <fmt/core.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+
+#include "meso/operations/sdf.hpp"
+#include "meso/sdf/vocabulary.hpp"
+#include "run.hpp"
+#include "stop.hpp"
+
+namespace meso::cli {
+namespace {
+
+constexpr const char* description =
+    "A solid in the command language of docs/sdf.md as a mesh: .ply .stl .obj .off .vtk";
+
+/// The flags that are ours; everything else is a word.
+void add_flags(CLI::App& flags, Run& run, operations::SdfOptions& options) {
+  flags.add_flag("--polish", options.polish, "Vertices on the surface itself, to 1e-6 of a grid spacing");
+  flags.add_flag("--no-slivers", options.no_slivers, "Collapse very narrow triangles");
+  flags.add_flag("--strict-math", options.strict_math, "Formulas as written, none regrouped");
+  flags.add_flag("--double", options.double_coordinates, "Coordinates in double precision (.ply)");
+  flags.add_flag("--ascii", options.ascii, "Text instead of binary (.ply, .stl)");
+  add_work_flags(flags, run.flags);
+  add_json_flag(flags, run.flags);
+  add_no_clobber_flag(flags, run.flags);
+  for (CLI::Option* option : flags.get_options()) option->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
+}
+
+std::vector<sdf::CallerFlag> caller_flags(const CLI::App& flags) {
+  std::vector<sdf::CallerFlag> out;
+  for (const CLI::Option* option : flags.get_options()) {
+    for (const std::string& name : option->get_lnames())
+      if (name != "help") out.push_back({.name = "--" + name, .takes_value = option->get_items_expected_max() > 0});
+  }
+  return out;
+}
+
+void print_help(const CLI::App& flags) {
+  fmt::print("{}\nUsage: meso sdf WORDS...\n\nWords, carried out from left to right on a stack of solids:\n",
+             description);
+  const auto line = [](std::string_view word, std::string_view argument, std::string_view meaning) {
+    fmt::print("  {:<36}{}\n", argument.empty() ? word : fmt::format("{} {}", word, argument), meaning);
+  };
+  line("tpms.NAME", "", "all points where a periodic surface's expression is negative: tpms.gyroid");
+  for (const sdf::Vocable& v : sdf::vocabulary()) line(v.word, v.argument, v.meaning);
+  fmt::print("\nOptions, anywhere; the last of equals counts:\n");
+  line("-b", "x0,y0,z0,x1,y1,z1", "the box (the solid's own, unbounded sides at -1 and 1)");
+  line("-s", "n | nx,ny,nz", "samples in all, or along the axes (100^3)");
+  line("-o", "PATH", "the mesh: .ply .stl .obj .off .vtk (out.ply)");
+  line("@PATH", "", "the words of that file");
+  line("-h --help", "", "this");
+  line("--version", "", "the version");
+  fmt::print("\n{}", CLI::Formatter().make_groups(&flags, CLI::AppFormatMode::Normal));
+}
+
+Json report_json(const operations::SdfReport& r, const std::string& out) {
+  const operations::MeshMeasures& m = *r.measures;
+  const Vec3 size = r.grid.box.max - r.grid.box.min;
+  const auto point = [](Vec3 p) { return Json{p.x, p.y, p.z}; };
+  Json j;
+  j["output"] = out;
+  j["volume"] = m.volume;
+  j["area"] = m.area;
+  j["solidFraction"] = m.volume / (size.x * size.y * size.z);
+  j["triangles"] = r.triangles;
+  j["vertices"] = r.points;
+  j["components"] = m.components;
+  j["closed"] = m.closed;
+  j["euler"] = m.euler;
+  j["bbox"] = m.box.empty() ? Json() : Json{point(m.box.min), point(m.box.max)};
+  j["box"] = {point(r.grid.box.min), point(r.grid.box.max)};
+  j["samples"] = r.grid.nodes;
+  j["undefined"] = r.undefined;
+  j["bytes"] = r.bytes;
+  j["seconds"] = {{"read", r.seconds.read}, {"contour", r.seconds.contour}, {"total", r.seconds.total}};
+  j["peakBytes"] = peak_memory_bytes();
+  return j;
+}
+
+void print_summary(const operations::SdfReport& r, const std::string& out) {
+  fmt::print(stderr, "{}: {} triangles, {} vertices, Euler number {}, {} bytes\n{} x {} x {} samples, {:.2f} s\n", out,
+             r.triangles, r.points, r.euler, r.bytes, r.grid.nodes[0], r.grid.nodes[1], r.grid.nodes[2],
+             r.seconds.total);
+}
+
+/// The values of our flags, checked as on any other verb.
+bool take_flags(CLI::App& flags, const std::vector<sdf::GivenFlag>& given, Run& run) {
+  std::vector<std::string> backwards;
+  for (const sdf::GivenFlag& flag : given)
+    backwards.push_back(flag.value.empty() ? flag.name : flag.name + "=" + flag.value);
+  std::reverse(backwards.begin(), backwards.end());
+  try {
+    flags.parse(backwards);
+  } catch (const CLI::ParseError& e) {
+    run.usage_error(e.what());
+    return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+void add_sdf(CLI::App& app) { app.add_subcommand("sdf", description)->prefix_command(); }
+
+int sdf_verb(Run& run, const std::vector<std::string>& words) {
+  CLI::App flags;
+  operations::SdfOptions options;
+  add_flags(flags, run, options);
+  const std::vector<sdf::CallerFlag> ours = caller_flags(flags);
+  const auto program = sdf::parse_program(sdf::words_of_arguments(words),
+                                          {.caller_flags = ours, .read_text = operations::read_text}, run.sink);
+  if (!program || !take_flags(flags, program->caller_flags, run)) {
+    run.flags.json = std::find(words.begin(), words.end(), "--json") != words.end();
+    return run.finish(Json::object());
+  }
+  if (program->asks == sdf::Program::Asks::help) return print_help(flags), 0;
+  if (program->asks == sdf::Program::Asks::version) return fmt::print("{}\n", MESO_VERSION), 0;
+  options.run = run.options();
+  options.existing = run.existing_file();
+  options.measure = run.flags.json;
+  if (run.sink.has_errors()) return run.finish();
+  clean_on_stop(program->output);
+  const auto report = operations::run_sdf(*program, options, run.sink);
+  if (!report) return run.finish(Json{{"output", program->output}});
+  if (run.flags.json) return run.finish(report_json(*report, program->output));
+  const int code = run.finish();
+  print_summary(*report, program->output);
+  return code;
+}
+
+}  // namespace meso::cli
