@@ -1,9 +1,30 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "meso/export_mesh/mesh_writer.hpp"
 
+#include <array>
+#include <utility>
+
 #include "ply_writer.hpp"
+#include "stl_writer.hpp"
+#include "text_writers.hpp"
+#include "vtk_writer.hpp"
 
 namespace meso {
+
+std::optional<MeshFormat> mesh_format_of(std::string_view path) {
+  static constexpr std::array<std::pair<std::string_view, MeshFormat>, 5> endings{{{".ply", MeshFormat::ply},
+                                                                                   {".stl", MeshFormat::stl},
+                                                                                   {".obj", MeshFormat::obj},
+                                                                                   {".off", MeshFormat::off},
+                                                                                   {".vtk", MeshFormat::vtk}}};
+  if (path.size() < 4) return std::nullopt;
+  std::string ending(path.substr(path.size() - 4));
+  for (char& c : ending)
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  for (const auto& [text, format] : endings)
+    if (ending == text) return format;
+  return std::nullopt;
+}
 
 std::unique_ptr<MeshSink> make_mesh_writer(MeshFormat format, OutputFile& file) {
   switch (format) {
@@ -11,6 +32,16 @@ std::unique_ptr<MeshSink> make_mesh_writer(MeshFormat format, OutputFile& file) 
       return std::make_unique<PlyWriter<float>>(file);
     case MeshFormat::ply_double:
       return std::make_unique<PlyWriter<double>>(file);
+    case MeshFormat::stl:
+      return std::make_unique<StlWriter>(file, StlFormat::binary);
+    case MeshFormat::stl_ascii:
+      return std::make_unique<StlWriter>(file, StlFormat::ascii);
+    case MeshFormat::obj:
+      return std::make_unique<ObjWriter>(file);
+    case MeshFormat::off:
+      return std::make_unique<OffWriter>(file);
+    case MeshFormat::vtk:
+      return std::make_unique<VtkWriter>(file);
   }
   return nullptr;
 }

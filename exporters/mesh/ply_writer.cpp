@@ -43,17 +43,6 @@ void PlyWriter<Real>::encode_points(std::span<const Vec3> block, ByteBuffer& out
 }
 
 template <class Real>
-bool PlyWriter<Real>::write_points(std::string_view bytes) {
-  return file_.write(bytes);
-}
-
-template <class Real>
-bool PlyWriter<Real>::begin_triangles(std::uint64_t point_count) {
-  points_ = point_count;
-  return true;
-}
-
-template <class Real>
 void PlyWriter<Real>::encode_triangles(std::span<const IndexTriangle> block, ByteBuffer& out) const {
   constexpr std::size_t record = 1 + sizeof(IndexTriangle);
   char* to = out.claim(block.size() * record);
@@ -63,11 +52,6 @@ void PlyWriter<Real>::encode_triangles(std::span<const IndexTriangle> block, Byt
     to += record;
   }
   out.advance(block.size() * record);
-}
-
-template <class Real>
-bool PlyWriter<Real>::write_triangles(std::string_view bytes) {
-  return file_.write(bytes);
 }
 
 template <class Real>

@@ -3,10 +3,13 @@
 // Mesh files of any size, written block by block (see mesh_sink.hpp).
 //
 //   std::optional<OutputFile> file = OutputFile::create("part.ply", ExistingFile::replace, diagnostics);
-//   const std::unique_ptr<MeshSink> writer = make_mesh_writer(MeshFormat::ply, file);
-//   if (contour(*source, *writer, {}, run, diagnostics) && file.commit(diagnostics)) ...
+//   const std::unique_ptr<MeshSink> writer = make_mesh_writer(MeshFormat::ply, *file);
+//   if (contour(*source, *writer, {}, run, diagnostics) && file->commit(diagnostics)) ...
 //
-// Equal meshes give equal bytes. A file that failed says so at OutputFile::commit().
+// Coordinates are 32-bit floats, but for ply_double. Text has the shortest numbers that read back as the same float.
+// All but the STL formats, which have no shared points, take constant memory. A file that failed says so at
+// OutputFile::commit(); formats that count ahead (all but OBJ and ASCII STL) cannot be written to a pipe. Equal meshes
+// give equal bytes, however they are cut into blocks.
 
 #include <memory>
 #include <optional>
@@ -17,7 +20,10 @@
 
 namespace meso {
 
-enum class MeshFormat { ply, ply_double };
+enum class MeshFormat { ply, ply_double, stl, stl_ascii, obj, off, vtk };
+
+/// By the ending of a file's name, upper or lower case: .ply .stl .obj .off .vtk.
+[[nodiscard]] std::optional<MeshFormat> mesh_format_of(std::string_view path);
 
 /// `file` must outlive the writer.
 [[nodiscard]] std::unique_ptr<MeshSink> make_mesh_writer(MeshFormat format, OutputFile& file);

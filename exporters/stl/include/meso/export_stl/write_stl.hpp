@@ -14,10 +14,9 @@
 
 #include "meso/base/byte_sink.hpp"
 #include "meso/base/triangle_stream.hpp"
+#include "meso/export_stl/stl_facet.hpp"
 
 namespace meso {
-
-enum class StlFormat { ascii, binary };
 
 struct StlCounts {
   std::uint64_t bytes = 0, triangles = 0;

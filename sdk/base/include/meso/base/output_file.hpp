@@ -32,6 +32,11 @@ class OutputFile final : public ByteSink {
   [[nodiscard]] bool write(std::string_view bytes) override;
   /// Overwrites bytes at `offset`, for counts that are known late; write() goes on where it was. Fails on a pipe.
   [[nodiscard]] bool write_at(std::uint64_t offset, std::string_view bytes);
+  /// As if a write had failed with `error` (an errno value). Returns false.
+  bool fail(int error) {
+    if (error_ == 0) error_ = error;
+    return false;
+  }
 
   /// Closes and renames. False, with a diagnostic, if any write or the rename failed; then nothing is left behind.
   [[nodiscard]] bool commit(DiagnosticSink& sink);

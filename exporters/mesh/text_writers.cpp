@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "text_writers.hpp"
+
+#include <array>
+#include <charconv>
+#include <cstdio>
+#include <string>
+
+namespace meso {
+namespace {
+
+constexpr std::size_t longest_number = 24;
+
+// `lead`, then three numbers with blanks between them.
+template <class Number>
+void put_line(std::string_view lead, const std::array<Number, 3>& numbers, ByteBuffer& out) {
+  char* const begin = out.claim(lead.size() + 3 * (longest_number + 1));
+  char* to = begin + lead.copy(begin, lead.size());
+  for (const Number n : numbers) {
+    to = std::to_chars(to, to + longest_number, n).ptr;
+    *to++ = ' ';
+  }
+  to[-1] = '\n';
+  out.advance(static_cast<std::size_t>(to - begin));
+}
+
+void put_points(std::span<const Vec3> block, std::string_view lead, ByteBuffer& out) {
+  const auto real = [](double c) { return static_cast<float>(c) + 0.0F; };  // + 0: one zero, not two
+  for (const Vec3& p : block) put_line(lead, std::array{real(p.x), real(p.y), real(p.z)}, out);
+}
+
+// Fixed width, because the counts are known late: readers skip blanks.
+std::string off_header(std::uint64_t points, std::uint64_t triangles) {
+  std::array<char, 64> text{};
+  std::snprintf(text.data(), text.size(), "OFF\n%12llu %12llu 0\n", static_cast<unsigned long long>(points),
+                static_cast<unsigned long long>(triangles));
+  return text.data();
+}
+
+}  // namespace
+
+bool ObjWriter::begin() { return file_.write("# millimetres, written by meso\n"); }
+
+void ObjWriter::encode_points(std::span<const Vec3> block, ByteBuffer& out) const { put_points(block, "v ", out); }
+
+void ObjWriter::encode_triangles(std::span<const IndexTriangle> block, ByteBuffer& out) const {
+  for (const IndexTriangle& t : block) put_line("f ", std::array{t[0] + 1, t[1] + 1, t[2] + 1}, out);  // from 1 on
+}
+
+bool ObjWriter::finish(std::uint64_t) { return true; }
+
+bool OffWriter::begin() { return file_.write(off_header(0, 0)); }
+
+void OffWriter::encode_points(std::span<const Vec3> block, ByteBuffer& out) const { put_points(block, "", out); }
+
+void OffWriter::encode_triangles(std::span<const IndexTriangle> block, ByteBuffer& out) const {
+  for (const IndexTriangle& t : block) put_line("3 ", t, out);
+}
+
+bool OffWriter::finish(std::uint64_t triangle_count) { return file_.write_at(0, off_header(points_, triangle_count)); }
+
+}  // namespace meso
