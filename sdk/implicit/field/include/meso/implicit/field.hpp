@@ -83,9 +83,9 @@ class Field {
   [[nodiscard]] Field eccentric_shell(double lower, double upper) const;
 
   // Booleans.
-  [[nodiscard]] friend Field union_of(const Field& a, const Field& b);         ///< min(a, b)
-  [[nodiscard]] friend Field intersection_of(const Field& a, const Field& b);  ///< max(a, b)
-  [[nodiscard]] friend Field difference_of(const Field& a, const Field& b);    ///< max(a, -b)
+  friend Field union_of(const Field& a, const Field& b);         ///< min(a, b)
+  friend Field intersection_of(const Field& a, const Field& b);  ///< max(a, b)
+  friend Field difference_of(const Field& a, const Field& b);    ///< max(a, -b)
 
   // Questions. The first one to a field prepares it, in time linear in its size.
   [[nodiscard]] double value(Vec3 p) const;
