@@ -1,29 +1,51 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "meso/implicit/compile.hpp"
 
+#include <algorithm>
 #include <cassert>
-#include <cstring>
+#include <cmath>
+#include <optional>
 
+#include "bands.hpp"
 #include "plan.hpp"
 #include "separate.hpp"
+#include "slab_plan.hpp"
 
 namespace meso::implicit {
 namespace {
 
+// The usual number of planes at a time; only for judging whether pruning pays.
+constexpr std::int32_t usual_slab = 8;
+
 class Source final : public GridSource {
  public:
-  explicit Source(Graph graph, Graph::Id root, const Grid& grid, const RowKernels& kernels, std::uint64_t table_bytes)
-      : plan_(std::move(graph), root, grid, kernels, table_bytes), steps_(plan_.nodes(Plan::Where::step)) {}
+  Source(Graph graph, Graph::Id root, std::span<const double> bands, const Grid& grid, const CompileOptions& options)
+      : plan_(std::move(graph), root, grid, row_kernels(options.instruction_set), options.max_table_bytes),
+        prunes_(options.pruning == Pruning::on ||
+                (options.pruning == Pruning::automatic && pruning_pays(plan_, usual_slab))),
+        signs_only_(std::any_of(bands.begin(), bands.end(), [](double b) { return std::isfinite(b); })) {
+    for (std::size_t k = 0; k < bands.size(); ++k) {
+      const ExternalLeaf& leaf = plan_.graph().externals()[k];
+      externals_.push_back(leaf.field->prepare(grid, leaf.field_from_world, bands[k]));
+    }
+  }
 
   [[nodiscard]] const Grid& grid() const override { return plan_.grid(); }
   [[nodiscard]] std::unique_ptr<GridSampler> sampler() const override;
+  [[nodiscard]] bool signs_only() const override { return signs_only_; }
 
   [[nodiscard]] const Plan& plan() const { return plan_; }
-  [[nodiscard]] const std::vector<Graph::Id>& steps() const { return steps_; }
+  [[nodiscard]] bool prunes() const { return prunes_; }
+  [[nodiscard]] std::vector<std::unique_ptr<ExternalRows>> external_rows() const {
+    std::vector<std::unique_ptr<ExternalRows>> rows;
+    for (const auto& external : externals_) rows.push_back(external->make_rows());
+    return rows;
+  }
 
  private:
   Plan plan_;
-  std::vector<Graph::Id> steps_;
+  std::vector<std::unique_ptr<ExternalField::Prepared>> externals_;
+  bool prunes_, signs_only_;
 };
 
 class Sampler final : public GridSampler {
@@ -33,21 +55,44 @@ class Sampler final : public GridSampler {
         plane_(plan_.plane_size()),
         plane_rows_(plan_.plane_rows(plane_.data())),
         plane_columns_(plan_.plane_columns(plane_.data())),
-        rows_(plan_.rows(source.steps(), plan_.root(), plane_.data(), {})),
         points_(plan_.points()),
-        samples_(static_cast<std::size_t>(plan_.grid().nodes[0])) {}
+        external_rows_(source.external_rows()),
+        samples_(static_cast<std::size_t>(plan_.grid().nodes[0])) {
+    for (const auto& rows : external_rows_) external_pointers_.push_back(rows.get());
+    if (source.prunes()) {
+      slab_.emplace(plan_, [this](auto steps, auto stands_for) {
+        return std::make_unique<Program>(rows_program(steps, stands_for));
+      });
+    } else {
+      rows_.emplace(rows_program(plan_.nodes(Plan::Where::step), {}));
+    }
+  }
 
-  void begin_slab(std::int32_t, std::int32_t) override {}
+  void begin_slab(std::int32_t first, std::int32_t last) override {
+    if (slab_) slab_->enter_slab(first, last);
+  }
 
   void row(std::int32_t j, std::int32_t k, float* values, std::uint64_t* inside) override {
     enter_plane(k);
-    rows_.sample(0, padded(samples_), std::size_t(j), std::size_t(k), values, reinterpret_cast<std::uint16_t*>(inside));
+    auto* const bits = reinterpret_cast<std::uint16_t*>(inside);  // 16 samples each; x86 is little-endian
+    if (slab_) {
+      const RowPlan& row = slab_->of_row(j);
+      std::copy(row.inside.begin(), row.inside.end(), bits);
+      for (const Run& run : row.runs)
+        run.program->sample(run.begin, run.end, std::size_t(j), std::size_t(k), values, bits);
+    } else {
+      rows_->sample(0, padded(samples_), std::size_t(j), std::size_t(k), values, bits);
+    }
     if (samples_ % 64 != 0) inside[samples_ / 64] &= (std::uint64_t{1} << samples_ % 64) - 1;
   }
 
   void values_at(std::span<const Vec3> points, double* out) override { points_.values_at(points, out); }
 
  private:
+  Program rows_program(std::span<const Graph::Id> steps, std::span<const Graph::Id> stands_for) {
+    return plan_.rows(steps, plane_.data(), {external_pointers_, samples_}, stands_for);
+  }
+
   void enter_plane(std::int32_t k) {
     if (k == in_plane_) return;
     in_plane_ = k;
@@ -57,8 +102,12 @@ class Sampler final : public GridSampler {
 
   const Plan& plan_;
   AlignedArray plane_;
-  Program plane_rows_, plane_columns_, rows_, points_;
+  Program plane_rows_, plane_columns_, points_;
+  std::vector<std::unique_ptr<ExternalRows>> external_rows_;
+  std::vector<ExternalRows*> external_pointers_;
   std::size_t samples_;
+  std::optional<Program> rows_;
+  std::optional<SlabPlan> slab_;
   std::int32_t in_plane_ = -1;
 };
 
@@ -67,11 +116,12 @@ std::unique_ptr<GridSampler> Source::sampler() const { return std::make_unique<S
 }  // namespace
 
 std::unique_ptr<GridSource> compile(const Term& term, const Grid& grid, const CompileOptions& options) {
+  assert(grid.nodes[0] >= 2 && grid.nodes[1] >= 2 && grid.nodes[2] >= 2);
   Graph graph;
   Graph::Id root = graph.from_term(term);
+  const std::vector<double> bands = external_bands(graph, root);
   if (!options.strict_math) root = separate(graph, root, grid);
-  return std::make_unique<Source>(std::move(graph), root, grid, row_kernels(options.instruction_set),
-                                  options.max_table_bytes);
+  return std::make_unique<Source>(std::move(graph), root, bands, grid, options);
 }
 
 void values(const Term& term, std::span<const Vec3> points, double* out, InstructionSet set) {

@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <string_view>
@@ -26,32 +28,45 @@ inline Term term_of(std::string_view text) {
 
 /// Every row of a grid, in slabs.
 struct Samples {
-  std::size_t words = 0;  ///< of a row
+  static constexpr float untouched = -77;
+
+  Grid grid;
+  std::size_t pitch;  ///< of rows
   std::vector<float> values;
   std::vector<std::uint64_t> inside;
 
-  Samples(const GridSource& source, std::int32_t slab) {
-    const Grid& g = source.grid();
-    const std::size_t pitch = padded(std::size_t(g.nodes[0]));
-    words = pitch / 64;
-    values.resize(pitch * std::size_t(g.nodes[1]) * std::size_t(g.nodes[2]), -77.f);
-    inside.resize(values.size() / 64, ~std::uint64_t{0});
-    const AlignedArray row_memory(pitch), bits_memory(words);
+  Samples(const GridSource& source, std::int32_t slab)
+      : grid(source.grid()), pitch(padded(std::size_t(grid.nodes[0]))) {
+    const AlignedArray memory(pitch), bits_memory(pitch / 64);
+    auto* const row = reinterpret_cast<float*>(memory.data());
+    auto* const bits = reinterpret_cast<std::uint64_t*>(bits_memory.data());
     const auto sampler = source.sampler();
-    for (std::int32_t first = 0; first < g.nodes[2]; first += slab) {
-      const std::int32_t last = std::min(first + slab, g.nodes[2]);
+    for (std::int32_t first = 0; first < grid.nodes[2]; first += slab) {
+      const std::int32_t last = std::min(first + slab, grid.nodes[2]);
       sampler->begin_slab(first, last);
       for (std::int32_t k = first; k < last; ++k)
-        for (std::int32_t j = 0; j < g.nodes[1]; ++j) {
-          const std::size_t row = std::size_t(k) * std::size_t(g.nodes[1]) + std::size_t(j);
-          auto* const v = reinterpret_cast<float*>(row_memory.data());
-          auto* const bits = reinterpret_cast<std::uint64_t*>(bits_memory.data());
-          std::fill_n(v, pitch, -77.f);
-          sampler->row(j, k, v, bits);
-          std::copy_n(v, pitch, values.data() + row * pitch);
-          std::copy_n(bits, words, inside.data() + row * words);
+        for (std::int32_t j = 0; j < grid.nodes[1]; ++j) {
+          std::fill_n(row, pitch, untouched);
+          sampler->row(j, k, row, bits);
+          std::fill_n(row + grid.nodes[0], pitch - std::size_t(grid.nodes[0]), 0.f);  // what is there does not count
+          values.insert(values.end(), row, row + pitch);
+          inside.insert(inside.end(), bits, bits + pitch / 64);
         }
     }
+  }
+
+  [[nodiscard]] std::size_t index(std::int32_t i, std::int32_t j, std::int32_t k) const {
+    return (std::size_t(k) * std::size_t(grid.nodes[1]) + std::size_t(j)) * pitch + std::size_t(i);
+  }
+  [[nodiscard]] float value(std::int32_t i, std::int32_t j, std::int32_t k) const { return values[index(i, j, k)]; }
+  [[nodiscard]] bool is_inside(std::int32_t i, std::int32_t j, std::int32_t k) const {
+    return (inside[index(i, j, k) / 64] >> i % 64 & 1) != 0;
+  }
+  /// NaN is one value: which bits it has is not told by IEEE 754.
+  [[nodiscard]] std::vector<std::uint32_t> bytes() const {
+    std::vector<std::uint32_t> result;
+    for (const float v : values) result.push_back(std::isnan(v) ? 0x7fc00000 : std::bit_cast<std::uint32_t>(v));
+    return result;
   }
 };
 

@@ -5,6 +5,9 @@
 #include <bit>
 #include <cmath>
 
+#include "meso/implicit/flat_term.hpp"
+#include "scalar_operation.hpp"
+
 namespace meso::implicit {
 
 using expr::Op;
@@ -52,9 +55,9 @@ Graph::Id Graph::power(Id base, double exponent) {
 
 Graph::Id Graph::apply(Op op, std::span<const Id> operands) {
   if (op != sum_of_products && std::all_of(operands.begin(), operands.end(), [&](Id id) { return is_number(id); })) {
-    std::vector<Term> constants;
-    for (const Id id : operands) constants.push_back(Term::constant(nodes_[id].number));
-    return number(Term::apply(op, std::move(constants)).node().number);
+    std::vector<double> constants;
+    for (const Id id : operands) constants.push_back(nodes_[id].number);
+    return number(apply_operation(op, constants));
   }
   const auto is = [&](std::size_t k, double value) {
     return is_number(operands[k]) && nodes_[operands[k]].number == value;
@@ -83,6 +86,8 @@ Graph::Id Graph::apply(Op op, std::span<const Id> operands) {
         if (is(1, exponent)) return power(operands[0], exponent);
       if (is(1, 0)) return number(1);
       break;
+    case Op::clamp:  // its definition
+      return apply(Op::min, {apply(Op::max, {ordered[0], ordered[1]}), ordered[2]});
     case Op::negate:
       if (nodes_[operands[0]].op == Op::negate) return this->operands(operands[0])[0];
       break;
@@ -93,20 +98,20 @@ Graph::Id Graph::apply(Op op, std::span<const Id> operands) {
 }
 
 Graph::Id Graph::from_term(const Term& term) {
-  if (const auto found = of_term_.find(term.identity()); found != of_term_.end()) return found->second;
-  const TermNode& n = term.node();
-  Id id = 0;
-  if (n.op == Op::number) {
-    id = number(n.number);
-  } else if (n.op == Op::name) {
-    id = n.axis == TermNode::external_axis ? external(n) : coordinate(n.axis);
-  } else {
-    std::vector<Id> operands;
-    for (const Term& operand : n.operands) operands.push_back(from_term(operand));
-    id = apply(n.op, operands);
+  const FlatTerm flat(term);
+  std::vector<Id> ids, operands;
+  for (const FlatTerm::Step& step : flat.steps()) {
+    if (step.op == Op::number) {
+      ids.push_back(number(step.node->number));
+    } else if (step.op == Op::name) {
+      ids.push_back(step.node->axis == TermNode::external_axis ? external(*step.node) : coordinate(step.node->axis));
+    } else {
+      operands.clear();
+      for (const std::uint32_t operand : flat.operands(step)) operands.push_back(ids[operand]);
+      ids.push_back(apply(step.op, operands));
+    }
   }
-  of_term_.emplace(term.identity(), id);
-  return id;
+  return ids.back();
 }
 
 std::vector<Graph::Id> Graph::reachable(Id root) const {

@@ -9,7 +9,6 @@
 #include <map>
 #include <memory>
 #include <span>
-#include <unordered_map>
 #include <vector>
 
 #include "meso/implicit/term.hpp"
@@ -74,7 +73,6 @@ class Graph {
   std::vector<Id> operands_;
   std::map<Key, Id> known_;
   std::vector<ExternalLeaf> externals_;
-  std::unordered_map<const TermNode*, Id> of_term_;
 };
 
 }  // namespace meso::implicit

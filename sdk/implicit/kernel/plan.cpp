@@ -169,9 +169,9 @@ Program Plan::plane_rows(double* plane) const {
 Program Plan::plane_columns(double* plane) const {
   return {graph_, kernels_, nodes(Where::yz_column), root_, places(1, plane)};
 }
-Program Plan::rows(std::span<const Graph::Id> steps, Graph::Id root, double* plane,
-                   const ExternalInputs& externals) const {
-  return {graph_, kernels_, steps, root, places(0, plane), externals};
+Program Plan::rows(std::span<const Graph::Id> steps, double* plane, const ExternalInputs& externals,
+                   std::span<const Graph::Id> stands_for) const {
+  return {graph_, kernels_, steps, root_, places(0, plane), externals, stands_for};
 }
 
 Program Plan::points() const {

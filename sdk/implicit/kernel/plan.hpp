@@ -39,9 +39,9 @@ class Plan {
   [[nodiscard]] std::size_t plane_size() const { return plane_size_; }
   [[nodiscard]] Program plane_rows(double* plane) const;
   [[nodiscard]] Program plane_columns(double* plane) const;
-  /// `steps`: nodes of Where::step that are to be computed; their root.
-  [[nodiscard]] Program rows(std::span<const Graph::Id> steps, Graph::Id root, double* plane,
-                             const ExternalInputs& externals) const;
+  /// `steps`: nodes of Where::step, all of them or those that are left if nodes stand for others.
+  [[nodiscard]] Program rows(std::span<const Graph::Id> steps, double* plane, const ExternalInputs& externals,
+                             std::span<const Graph::Id> stands_for = {}) const;
   [[nodiscard]] Program points() const;
 
  private:

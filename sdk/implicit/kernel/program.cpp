@@ -19,18 +19,25 @@ constexpr std::size_t point_rows = 3;
 /// Gives rows to steps: a row is free again after the last step that reads it.
 class Program::Assembler {
  public:
-  Assembler(Program& program, const Graph& graph, const RowKernels& kernels, const PlaceOf& place_of)
-      : program_(program), graph_(graph), kernels_(kernels), place_of_(place_of), row_of_(graph.size(), none) {}
+  Assembler(Program& program, const Graph& graph, const RowKernels& kernels, const PlaceOf& place_of,
+            std::span<const Graph::Id> stands_for)
+      : program_(program),
+        graph_(graph),
+        kernels_(kernels),
+        place_of_(place_of),
+        stands_for_(stands_for),
+        row_of_(graph.size(), none) {}
 
-  void assemble(std::span<const Graph::Id> steps, Graph::Id root, const ExternalInputs& externals) {
+  void assemble(std::span<const Graph::Id> steps, Graph::Id given_root, const ExternalInputs& externals) {
+    const Graph::Id root = read(given_root);
     std::vector<std::size_t> last_use(graph_.size(), 0);
     for (std::size_t s = 0; s < steps.size(); ++s)
-      for (const Graph::Id operand : graph_.operands(steps[s])) last_use[operand] = s;
+      for (const Graph::Id operand : graph_.operands(steps[s])) last_use[read(operand)] = s;
     last_use[root] = steps.size();
     for (std::size_t s = 0; s < steps.size(); ++s) {
       add_step(steps[s], externals);
       for (const Graph::Id operand : graph_.operands(steps[s]))
-        if (last_use[operand] == s) release(operand);
+        if (last_use[read(operand)] == s) release(read(operand));
       program_.instructions_.back().out = place(steps[s]);
     }
     add_result(steps, root);
@@ -39,6 +46,8 @@ class Program::Assembler {
 
  private:
   static constexpr std::size_t none = ~std::size_t{0};
+
+  [[nodiscard]] Graph::Id read(Graph::Id id) const { return stands_for_.empty() ? id : stands_for_[id]; }
 
   void add_step(Graph::Id id, const ExternalInputs& externals) {
     Instruction instruction;
@@ -56,7 +65,7 @@ class Program::Assembler {
   void add_operands(Instruction& instruction, std::span<const Graph::Id> ids) {
     instruction.first_operand = static_cast<std::uint32_t>(program_.operands_.size());
     instruction.operands = static_cast<std::uint32_t>(ids.size());
-    for (const Graph::Id id : ids) program_.operands_.push_back(place(id));
+    for (const Graph::Id id : ids) program_.operands_.push_back(place(read(id)));
     program_.inputs_.resize(std::max(program_.inputs_.size(), ids.size()));
   }
 
@@ -106,15 +115,16 @@ class Program::Assembler {
   const Graph& graph_;
   const RowKernels& kernels_;
   const PlaceOf& place_of_;
+  std::span<const Graph::Id> stands_for_;
   std::vector<std::size_t> row_of_;
   std::vector<std::size_t> free_;
   std::size_t rows_ = point_rows;
 };
 
 Program::Program(const Graph& graph, const RowKernels& kernels, std::span<const Graph::Id> steps, Graph::Id root,
-                 const PlaceOf& place_of, const ExternalInputs& externals)
+                 const PlaceOf& place_of, const ExternalInputs& externals, std::span<const Graph::Id> stands_for)
     : samples_(externals.samples) {
-  Assembler(*this, graph, kernels, place_of).assemble(steps, root, externals);
+  Assembler(*this, graph, kernels, place_of, stands_for).assemble(steps, root, externals);
 }
 
 std::span<const Input> Program::inputs(const Instruction& instruction, std::size_t i, std::size_t j, std::size_t k) {

@@ -43,9 +43,10 @@ class Program {
   /// other node is written by its step.
   using PlaceOf = std::function<std::optional<Operand>(Graph::Id)>;
 
-  /// Steps are nodes to be computed, in that order.
+  /// Steps are nodes to be computed, in that order. Where a node is read and `stands_for` is not empty, the node
+  /// stands_for[id] is read in its place.
   Program(const Graph& graph, const RowKernels& kernels, std::span<const Graph::Id> steps, Graph::Id root,
-          const PlaceOf& place_of, const ExternalInputs& externals = {});
+          const PlaceOf& place_of, const ExternalInputs& externals = {}, std::span<const Graph::Id> stands_for = {});
 
   /// Every step for samples of row (j, k). REQUIRES, here and below: begin and end are multiples of row_unit.
   void run(std::size_t begin, std::size_t end, std::size_t j, std::size_t k);

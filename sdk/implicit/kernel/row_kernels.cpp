@@ -189,7 +189,6 @@ void fill(RowKernels& kernels) {
   MESO_TWO(max, y > x ? y : x)
   MESO_TWO(logical_and, truth((x != 0) & (y != 0)))
   MESO_TWO(logical_or, truth((x != 0) | (y != 0)))
-  MESO_THREE(clamp, z < (y > x ? y : x) ? z : (y > x ? y : x))
   MESO_THREE(select, x != 0 ? y : z)
 #undef MESO_ONE
 #undef MESO_TWO

@@ -24,9 +24,13 @@ namespace meso::implicit {
 
 enum class InstructionSet : std::uint8_t { automatic, sse2, avx2, avx512 };
 
+/// Skip what interval arithmetic shows to be of one sign. `automatic`: where a sample of blocks says that it pays.
+enum class Pruning : std::uint8_t { automatic, off, on };
+
 struct CompileOptions {
   bool strict_math = false;  ///< every operation as the text says it, none regrouped
   InstructionSet instruction_set = InstructionSet::automatic;
+  Pruning pruning = Pruning::automatic;
   std::uint64_t max_table_bytes = std::uint64_t{32} << 20;
 };
 
