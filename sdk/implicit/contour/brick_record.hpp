@@ -33,6 +33,10 @@ struct BrickRecord {
   std::uint64_t last_plane_vertices = 0;
   std::uint64_t undefined = 0;
   std::vector<JoinedCell> joined;
+
+  [[nodiscard]] std::uint64_t bytes() const {
+    return signs.capacity() * sizeof signs[0] + joined.capacity() * sizeof joined[0];
+  }
 };
 
 /// Whether a row's signs are kept as crossings, and not as words.

@@ -6,7 +6,9 @@
 #include <tbb/partitioner.h>
 #include <tbb/task_arena.h>
 
+#include <array>
 #include <atomic>
+#include <cassert>
 
 #include "face_pass.hpp"
 #include "ordered_output.hpp"
@@ -21,9 +23,12 @@ constexpr std::size_t brick_planes = 15;
 
 class Contouring {
  public:
-  Contouring(const GridSource& source, MeshSink& sink, const RunOptions& run, DiagnosticSink& diagnostics)
+  Contouring(const GridSource& source, MeshSink& sink, const ContourOptions& options, const RunOptions& run,
+             DiagnosticSink& diagnostics)
       : source_(source),
         sink_(sink),
+        options_(options),
+        run_(run),
         diagnostics_(diagnostics),
         layout_(source.grid()),
         bricks_((layout_.nz + brick_planes) / brick_planes),
@@ -37,6 +42,8 @@ class Contouring {
  private:
   template <class Pass, class Brick>
   bool for_each_brick(OrderedOutput& output, Pass make_pass, Brick do_brick);
+  bool grid_fits();
+  bool fits(std::uint64_t bytes, std::string_view purpose);
   bool vertex_pass();
   bool number_vertices();
   bool face_pass();
@@ -53,12 +60,14 @@ class Contouring {
 
   const GridSource& source_;
   MeshSink& sink_;
+  const ContourOptions& options_;
+  const RunOptions& run_;
   DiagnosticSink& diagnostics_;
   Layout layout_;
   std::size_t bricks_, jobs_;
   std::vector<BrickRecord> records_;
   std::vector<std::uint64_t> first_vertex_;
-  std::atomic<std::uint64_t> triangles_{0};
+  std::atomic<std::uint64_t> recorded_bytes_{0}, triangles_{0};
   Pulse pulse_;
 };
 
@@ -83,25 +92,49 @@ bool Contouring::for_each_brick(OrderedOutput& output, Pass make_pass, Brick do_
   return !pulse_.stopped() && !output.failed();
 }
 
+bool Contouring::fits(std::uint64_t bytes, std::string_view purpose) {
+  if (bytes <= run_.max_memory_bytes) return true;
+  const auto mebibytes = [](std::uint64_t n) { return std::to_string((n + (std::uint64_t{1} << 20) - 1) >> 20); };
+  diagnostics_.report({.code = Code::limit_grid_memory,
+                       .args = {std::to_string(source_.grid().node_count()), mebibytes(bytes), std::string(purpose),
+                                mebibytes(run_.max_memory_bytes)}});
+  return false;
+}
+
+// What is known before the start: planes of samples and signs for each thread, and the record of a surface that every
+// row crosses four times.
+bool Contouring::grid_fits() {
+  const std::uint64_t plane_of_signs = 8 * layout_.words * layout_.ny;
+  const std::uint64_t thread =
+      SampleRows::bytes(layout_) + (source_.signs_only() ? 2 * (brick_planes + 1) : 2) * plane_of_signs;
+  const std::uint64_t record = (layout_.ny + 1) * (layout_.nz + 1) * (sizeof(RowCounts) + 4 * sizeof(std::uint16_t));
+  return fits(jobs_ * thread + record, "contouring with " + std::to_string(jobs_) + " threads");
+}
+
 bool Contouring::vertex_pass() {
   OrderedOutput output([&](std::string_view bytes) { return sink_.write_points(bytes); }, 2 * jobs_);
   pulse_.begin("vertices");
   return for_each_brick(
-      output, [&] { return VertexPass(layout_, source_.sampler(), sink_); },
+      output, [&] { return VertexPass(layout_, source_, sink_, options_.polish); },
       [&](VertexPass& pass, std::size_t brick, ByteBuffer& bytes) {
         records_[brick] = pass.run(first_plane(brick), last_plane(brick), bytes, [&] {
           output.offer(brick, bytes);
           return pulse_.beat();
         });
+        recorded_bytes_ += records_[brick].bytes();
+        if (recorded_bytes_ > run_.max_memory_bytes) pulse_.stop();
       });
 }
 
 bool Contouring::number_vertices() {
   for (std::size_t b = 0; b < bricks_; ++b) first_vertex_[b + 1] = first_vertex_[b] + records_[b].vertices;
-  if (first_vertex_.back() <= sink_.max_points()) return true;
-  diagnostics_.report({.code = Code::limit_vertices,
-                       .args = {std::to_string(first_vertex_.back()), std::to_string(sink_.max_points())}});
-  return false;
+  const std::uint64_t points = first_vertex_.back();
+  if (points > sink_.max_points()) {
+    diagnostics_.report(
+        {.code = Code::limit_vertices, .args = {std::to_string(points), std::to_string(sink_.max_points())}});
+    return false;
+  }
+  return fits(recorded_bytes_ + points * (sink_.bytes_per_point() + 2 * sink_.bytes_per_triangle()), "its surface");
 }
 
 bool Contouring::face_pass() {
@@ -122,11 +155,13 @@ bool Contouring::face_pass() {
 
 // Where the sink has failed, its owner reports.
 std::nullopt_t Contouring::stopped() {
-  if (pulse_.stopped()) diagnostics_.report({.code = pulse_.out_of_time() ? Code::limit_time : Code::cancelled});
+  if (fits(recorded_bytes_, "the record of its surface") && pulse_.stopped())
+    diagnostics_.report({.code = pulse_.out_of_time() ? Code::limit_time : Code::cancelled});
   return std::nullopt;
 }
 
 std::optional<ContourReport> Contouring::run() {
+  if (!grid_fits()) return std::nullopt;
   if (!sink_.begin() || !vertex_pass()) return stopped();
   if (!number_vertices()) return std::nullopt;
   if (!sink_.begin_triangles(first_vertex_.back()) || !face_pass()) return stopped();
@@ -140,12 +175,27 @@ std::optional<ContourReport> Contouring::run() {
   return report;
 }
 
+bool check_nodes(const Grid& grid, DiagnosticSink& diagnostics) {
+  // Crossings are numbered in 16 bits, the added layer included; rows of a brick in 32.
+  constexpr std::array<std::int32_t, 3> most{65534, 1 << 24, 1 << 24};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    assert(grid.nodes[axis] >= 2);
+    if (grid.nodes[axis] <= most[axis]) continue;
+    diagnostics.report(
+        {.code = Code::limit_grid,
+         .args = {std::to_string(grid.nodes[axis]), std::string(1, "xyz"[axis]), std::to_string(most[axis])}});
+    return false;
+  }
+  return true;
+}
+
 }  // namespace
 
-std::optional<ContourReport> contour(const GridSource& source, MeshSink& sink, const ContourOptions&,
+std::optional<ContourReport> contour(const GridSource& source, MeshSink& sink, const ContourOptions& options,
                                      const RunOptions& run, DiagnosticSink& diagnostics) {
+  if (!check_nodes(source.grid(), diagnostics)) return std::nullopt;
   const auto start = std::chrono::steady_clock::now();
-  auto report = Contouring(source, sink, run, diagnostics).run();
+  auto report = Contouring(source, sink, options, run, diagnostics).run();
   if (report) report->seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return report;
 }

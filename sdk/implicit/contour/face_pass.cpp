@@ -4,6 +4,8 @@
 #include <bit>
 #include <cstring>
 
+#include "bits.hpp"
+
 namespace meso::implicit {
 namespace {
 
@@ -90,11 +92,10 @@ void FacePass::find_active_cells() {
   std::uint64_t any_before = 0, all_before = 0;
   for (std::size_t w = 0; w < layout_.words; ++w) {
     const std::uint64_t any = a_[w] | b_[w] | c_[w] | d_[w], all = a_[w] & b_[w] & c_[w] & d_[w];
-    std::uint64_t active = (any | any << 1 | any_before >> 63) & ~(all & (all << 1 | all_before >> 63));
+    const std::uint64_t active = (any | any << 1 | any_before >> 63) & ~(all & (all << 1 | all_before >> 63));
     any_before = any;
     all_before = all;
-    for (; active != 0; active &= active - 1)
-      *to++ = static_cast<std::uint16_t>(64 * w + static_cast<std::size_t>(std::countr_zero(active)));
+    to = append_bits(active, w, to);
   }
   active_ = static_cast<std::size_t>(to - cells_.data());
 }

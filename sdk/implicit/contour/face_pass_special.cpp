@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Rows of cells at the box, where vertices are shared, and rows with joined faces.
-#include <bit>
-
+#include "bits.hpp"
 #include "face_pass.hpp"
 
 namespace meso::implicit {
@@ -10,11 +9,7 @@ namespace {
 template <class Number>
 void number_crossings(const std::uint64_t* p, const std::uint64_t* q, std::size_t words, std::vector<std::uint32_t>& to,
                       Number number) {
-  for (std::size_t w = 0; w < words; ++w)
-    for (std::uint64_t bits = p[w] ^ q[w]; bits != 0; bits &= bits - 1) {
-      const std::size_t i = 64 * w + static_cast<std::size_t>(std::countr_zero(bits));
-      to[i] = number(i);
-    }
+  for (std::size_t w = 0; w < words; ++w) for_each_bit(p[w] ^ q[w], w, [&](std::size_t i) { to[i] = number(i); });
 }
 
 }  // namespace

@@ -3,13 +3,10 @@
 
 #include <algorithm>
 
+#include "bits.hpp"
+
 namespace meso::implicit {
 namespace {
-
-std::uint64_t shifted(const std::uint64_t* words, std::size_t w) {
-  const auto* before = words + w;
-  return words[w] << 1 | before[-1] >> 63;
-}
 
 // p and q hold opposite corners each.
 bool joins(double p0, double p1, double q0, double q1, bool p_inside) {
@@ -17,11 +14,6 @@ bool joins(double p0, double p1, double q0, double q1, bool p_inside) {
 }
 
 bool bit(const std::uint64_t* words, std::size_t i) { return (words[i / 64] >> i % 64 & 1U) != 0; }
-
-template <class Visit>
-void visit_bits(std::uint64_t bits, std::size_t w, Visit visit) {
-  for (; bits != 0; bits &= bits - 1) visit(64 * w + static_cast<std::size_t>(std::countr_zero(bits)));
-}
 
 // A face between nodes i - 1 and i of two rows: `near` and `far`.
 bool joins_between(const SampleRow& near, const SampleRow& far, std::size_t i) {
@@ -31,7 +23,8 @@ bool joins_between(const SampleRow& near, const SampleRow& far, std::size_t i) {
 
 // All four sides of the face between nodes i - 1 and i of two rows are crossed.
 std::uint64_t ambiguous(const SampleRow& near, const SampleRow& far, std::size_t w) {
-  const std::uint64_t n = near.inside[w], f = far.inside[w], nl = shifted(near.inside, w), fl = shifted(far.inside, w);
+  const std::uint64_t n = near.inside[w], f = far.inside[w], nl = moved_up(near.inside, w),
+                      fl = moved_up(far.inside, w);
   return (n ^ nl) & (f ^ fl) & (n ^ f);
 }
 
@@ -48,17 +41,17 @@ void JoinedFaces::begin_plane() {
 }
 
 void JoinedFaces::find_across_z(const CellRows& rows, std::uint32_t j, std::size_t w) {
-  visit_bits(ambiguous(rows.c, rows.d, w), w, [&](std::size_t i) {
+  for_each_bit(ambiguous(rows.c, rows.d, w), w, [&](std::size_t i) {
     if (joins_between(rows.c, rows.d, i)) plane_.push_back({j, static_cast<std::uint16_t>(i)});
   });
 }
 
-void JoinedFaces::find_across_xy(const CellRows& rows, std::size_t w) {
-  visit_bits(ambiguous(rows.b, rows.d, w), w, [&](std::size_t i) {
+void JoinedFaces::find_across_x_and_y(const CellRows& rows, std::size_t w) {
+  for_each_bit(ambiguous(rows.b, rows.d, w), w, [&](std::size_t i) {
     if (joins_between(rows.b, rows.d, i)) across_y_.push_back(static_cast<std::uint16_t>(i));
   });
   const std::uint64_t a = rows.a.inside[w], b = rows.b.inside[w], c = rows.c.inside[w], d = rows.d.inside[w];
-  visit_bits((a ^ b) & (c ^ d) & (a ^ c), w, [&](std::size_t i) {
+  for_each_bit((a ^ b) & (c ^ d) & (a ^ c), w, [&](std::size_t i) {
     if (!joins(rows.a.values[i], rows.d.values[i], rows.b.values[i], rows.c.values[i], bit(rows.d.inside, i))) return;
     row_.push_back({static_cast<std::uint16_t>(i), 1});
     row_.push_back({static_cast<std::uint16_t>(i + 1), 0});

@@ -24,10 +24,10 @@ class JoinedFaces {
   void begin_plane();
   void begin_row() { row_.clear(); }
 
-  /// Looks at the faces that end at nodes of word `w` of row d: across z only, in a plane that belongs to the brick
-  /// before; or across all axes.
+  /// Looks at the faces whose last corners are the nodes of word `w` of row d. A brick needs those across z in the
+  /// plane before it, too.
   void find_across_z(const CellRows& rows, std::uint32_t j, std::size_t w);
-  void find_across_xy(const CellRows& rows, std::size_t w);
+  void find_across_x_and_y(const CellRows& rows, std::size_t w);
 
   /// Appends this row's cells to `cells`, ascending.
   void collect(std::uint32_t j, std::uint32_t row, std::vector<JoinedCell>& cells);

@@ -2,6 +2,7 @@
 #pragma once
 // Asks whether to stop, and tells how far the work is: often enough, and from one thread at a time.
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <mutex>
@@ -26,6 +27,7 @@ class Pulse {
     if (done % beats_between_looks == 0) look(done);
     return !stopped();
   }
+  void stop() { stopped_ = true; }
   [[nodiscard]] bool stopped() const { return stopped_.load(std::memory_order_relaxed); }
   [[nodiscard]] bool out_of_time() const { return out_of_time_; }
 

@@ -3,7 +3,9 @@
 
 #include <algorithm>
 
+#include "bits.hpp"
 #include "case_table.hpp"
+#include "edge_end_sampler.hpp"
 #include "pad_vertices.hpp"
 
 namespace meso::implicit {
@@ -13,22 +15,16 @@ constexpr std::size_t chunk = 512;
 
 // Where the linear interpolant is zero, from v0 (t = 0) to v1, kept off the ends: within a thousandth of a cell no
 // accuracy is lost, and no triangle degenerates. Half way where an end has no value.
-float crossing(float v0, float v1) {
+float crossing(float v0, float v1, bool& undefined) {
   constexpr float margin = 1e-3F;
   float t = v0 / (v0 - v1);
+  undefined |= t != t;
   t = t < margin ? margin : t;
   t = t > 1 - margin ? 1 - margin : t;
   return t == t ? t : 0.5F;
 }
 
 double between(double a, double b, float t) { return a + static_cast<double>(t) * (b - a); }
-
-// Positions of set bits, ascending; returns where they end.
-std::uint16_t* append_bits(std::uint64_t bits, std::size_t w, std::uint16_t* to) {
-  for (; bits != 0; bits &= bits - 1)
-    *to++ = static_cast<std::uint16_t>(64 * w + static_cast<std::size_t>(std::countr_zero(bits)));
-  return to;
-}
 
 unsigned corners_inside(const CellRows& rows, std::size_t b) {
   unsigned inside = 0, corner = 0;
@@ -40,22 +36,26 @@ unsigned corners_inside(const CellRows& rows, std::size_t b) {
 
 }  // namespace
 
-VertexPass::VertexPass(const Layout& layout, std::unique_ptr<GridSampler> sampler, const MeshSink& sink)
+VertexPass::VertexPass(const Layout& layout, const GridSource& source, const MeshSink& sink, bool polish)
     : layout_(layout),
-      sampler_(std::move(sampler)),
+      sampler_(source.sampler()),
       sink_(sink),
+      signs_only_(source.signs_only()),
+      polish_(polish),
       rows_(layout),
       x_(layout.nx + 1),
       y_(layout.nx + 1),
       z_(layout.nx + 1),
-      t_(layout.nx + 1),
-      points_(chunk + 4 * (layout.nx + 1)) {}
+      points_(chunk + 4 * (layout.nx + 1)) {
+  if (signs_only_) sampler_ = std::make_unique<EdgeEndSampler>(source.grid(), std::move(sampler_));
+}
 
 BrickRecord VertexPass::run(std::size_t first, std::size_t last, ByteBuffer& out,
                             const std::function<bool()>& after_row) {
   BrickRecord record;
   signs_.clear();
-  const bool continues = first > 0 && sampled_ == first;  // this thread did the brick before
+  // This thread did the brick before, and has its last plane; but not the values for edges that leave it.
+  const bool continues = first > 0 && sampled_ == first && !signs_only_;
   const std::size_t from = continues || first == 0 ? first : first - 1;
   sampler_->begin_slab(static_cast<std::int32_t>(from), static_cast<std::int32_t>(std::min(last, layout_.nz)));
   if (!continues) joined_.begin_brick();
@@ -109,7 +109,7 @@ void VertexPass::row(std::size_t j, std::size_t k, std::uint32_t cell_row, Brick
   find_crossings(rows, j, k);
   const std::size_t old_cells = record.joined.size();
   joined_.collect(static_cast<std::uint32_t>(j), cell_row, record.joined);
-  add_vertices(rows, j, k);
+  add_vertices(rows, j, k, record);
   RowCounts counts{static_cast<std::uint16_t>(nx_), static_cast<std::uint16_t>(ny_), static_cast<std::uint16_t>(nz_),
                    0};
   if (record.joined.size() > old_cells)
@@ -124,34 +124,57 @@ void VertexPass::find_crossings(const CellRows& rows, std::size_t j, std::size_t
   const PadVertices pads(layout_, j, k);
   for (std::size_t w = 0; w < layout_.words; ++w) {
     const std::uint64_t d = rows.d.inside[w];
-    const std::uint64_t x = d ^ (d << 1 | rows.d.inside[static_cast<std::ptrdiff_t>(w) - 1] >> 63);
-    const std::uint64_t y = d ^ rows.c.inside[w], z = d ^ rows.b.inside[w];
+    const std::uint64_t x = d ^ moved_up(rows.d.inside, w), y = d ^ rows.c.inside[w], z = d ^ rows.b.inside[w];
     if ((x | y | z) == 0) continue;
     x_end = append_bits(x, w, x_end);
     y_end = append_bits(y & pads.y_mask(w), w, y_end);
     z_end = append_bits(z & pads.z_mask(w), w, z_end);
     if ((x & y) != 0) joined_.find_across_z(rows, static_cast<std::uint32_t>(j), w);
-    if ((x & z) != 0 || (y & z) != 0) joined_.find_across_xy(rows, w);
+    if ((x & z) != 0 || (y & z) != 0) joined_.find_across_x_and_y(rows, w);
   }
   nx_ = static_cast<std::size_t>(x_end - x_.data());
   ny_ = static_cast<std::size_t>(y_end - y_.data());
   nz_ = static_cast<std::size_t>(z_end - z_.data());
 }
 
-void VertexPass::add_vertices(const CellRows& rows, std::size_t j, std::size_t k) {
+void VertexPass::add_vertices(const CellRows& rows, std::size_t j, std::size_t k, BrickRecord& record) {
   const auto sj = static_cast<std::ptrdiff_t>(j), sk = static_cast<std::ptrdiff_t>(k);
   const double y = layout_.y(sj), z = layout_.z(sk), y0 = layout_.y(sj - 1), z0 = layout_.z(sk - 1);
-  const float* const d = rows.d.values;
+  const float *const b = rows.b.values, *const c = rows.c.values, *const d = rows.d.values;
   Vec3* to = points_.data() + filled_;
+  bool undefined = false;
   for (std::size_t n = 0; n < nx_; ++n) {
-    const auto b = static_cast<std::ptrdiff_t>(x_[n]);
-    *to++ = {between(layout_.x(b - 1), layout_.x(b), crossing(d[b - 1], d[b])), y, z};
+    const auto i = static_cast<std::ptrdiff_t>(x_[n]);
+    *to++ = {between(layout_.x(i - 1), layout_.x(i), crossing(d[i - 1], d[i], undefined)), y, z};
   }
   for (std::size_t n = 0; n < ny_; ++n)
-    *to++ = {layout_.x(y_[n]), between(y0, y, crossing(rows.c.values[y_[n]], d[y_[n]])), z};
+    *to++ = {layout_.x(y_[n]), between(y0, y, crossing(c[y_[n]], d[y_[n]], undefined)), z};
   for (std::size_t n = 0; n < nz_; ++n)
-    *to++ = {layout_.x(z_[n]), y, between(z0, z, crossing(rows.b.values[z_[n]], d[z_[n]]))};
+    *to++ = {layout_.x(z_[n]), y, between(z0, z, crossing(b[z_[n]], d[z_[n]], undefined))};
+  if (undefined)
+    visit_edges(rows, j, k, [&](Vec3, std::size_t, double, float v0, float v1) {
+      if (v0 != v0 || v1 != v1) ++record.undefined;
+    });
+  if (polish_)
+    visit_edges(rows, j, k, [&, n = filled_](Vec3 p, std::size_t axis, double step, float v0, float v1) mutable {
+      if (step > 0) roots_.add(p, axis, step, v0, v1, n);
+      ++n;
+    });
   filled_ += nx_ + ny_ + nz_;
+}
+
+// In the order of the vertices: where the edge begins, its axis and length (0 in the added layer), and its values.
+template <class Visit>
+void VertexPass::visit_edges(const CellRows& rows, std::size_t j, std::size_t k, Visit visit) const {
+  const auto sj = static_cast<std::ptrdiff_t>(j), sk = static_cast<std::ptrdiff_t>(k);
+  const double y = layout_.y(sj), z = layout_.z(sk), y0 = layout_.y(sj - 1), z0 = layout_.z(sk - 1);
+  const float *const b = rows.b.values, *const c = rows.c.values, *const d = rows.d.values;
+  for (std::size_t n = 0; n < nx_; ++n) {
+    const auto i = static_cast<std::ptrdiff_t>(x_[n]);
+    visit(Vec3{layout_.x(i - 1), y, z}, 0, layout_.x(i) - layout_.x(i - 1), d[i - 1], d[i]);
+  }
+  for (std::size_t n = 0; n < ny_; ++n) visit(Vec3{layout_.x(y_[n]), y0, z}, 1, y - y0, c[y_[n]], d[y_[n]]);
+  for (std::size_t n = 0; n < nz_; ++n) visit(Vec3{layout_.x(z_[n]), y, z0}, 2, z - z0, b[z_[n]], d[z_[n]]);
 }
 
 std::uint16_t VertexPass::add_centres(const CellRows& rows, std::size_t j, std::size_t k,
@@ -169,11 +192,12 @@ std::uint16_t VertexPass::add_centres(const CellRows& rows, std::size_t j, std::
                        row.values[i]};
     };
     Vec3 sum;
+    bool undefined = false;
     for (unsigned e = 0; e < 12; ++e) {
       if ((edges >> e & 1U) == 0) continue;
       const auto [p0, v0] = corner(edge_corners[e][0]);
       const auto [p1, v1] = corner(edge_corners[e][1]);
-      sum += p0 + static_cast<double>(crossing(v0, v1)) * (p1 - p0);
+      sum += p0 + static_cast<double>(crossing(v0, v1, undefined)) * (p1 - p0);
     }
     points_[filled_++] = sum / std::popcount(edges);
   }
@@ -181,6 +205,7 @@ std::uint16_t VertexPass::add_centres(const CellRows& rows, std::size_t j, std::
 }
 
 void VertexPass::flush(ByteBuffer& out) {
+  if (polish_) roots_.solve(*sampler_, points_);
   sink_.encode_points({points_.data(), filled_}, out);
   filled_ = 0;
 }

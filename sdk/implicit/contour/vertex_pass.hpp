@@ -10,6 +10,7 @@
 #include "joined_faces.hpp"
 #include "meso/base/mesh_sink.hpp"
 #include "meso/implicit/grid_source.hpp"
+#include "root_polish.hpp"
 #include "sample_rows.hpp"
 
 namespace meso::implicit {
@@ -17,7 +18,7 @@ namespace meso::implicit {
 /// One per thread.
 class VertexPass {
  public:
-  VertexPass(const Layout& layout, std::unique_ptr<GridSampler> sampler, const MeshSink& sink);
+  VertexPass(const Layout& layout, const GridSource& source, const MeshSink& sink, bool polish);
 
   /// Planes [first, last) of 0 ... nodes; the last of these is the layer above the grid. Calls `after_row` now and
   /// then: false stops the work.
@@ -28,19 +29,22 @@ class VertexPass {
   void sample_plane_below(std::size_t k);
   void row(std::size_t j, std::size_t k, std::uint32_t cell_row, BrickRecord& record);
   void find_crossings(const CellRows& rows, std::size_t j, std::size_t k);
-  void add_vertices(const CellRows& rows, std::size_t j, std::size_t k);
+  void add_vertices(const CellRows& rows, std::size_t j, std::size_t k, BrickRecord& record);
+  template <class Visit>
+  void visit_edges(const CellRows& rows, std::size_t j, std::size_t k, Visit visit) const;
   std::uint16_t add_centres(const CellRows& rows, std::size_t j, std::size_t k, std::span<const JoinedCell> cells);
   void flush(ByteBuffer& out);
 
   const Layout& layout_;
   std::unique_ptr<GridSampler> sampler_;
   const MeshSink& sink_;
+  bool signs_only_, polish_;
+  RootPolish roots_;
   SampleRows rows_;
   JoinedFaces joined_;
   std::size_t sampled_ = 0;               // planes below this one have been sampled; rows_ holds the last of them
   std::vector<std::uint16_t> x_, y_, z_;  // crossings of the current row
   std::size_t nx_ = 0, ny_ = 0, nz_ = 0;  // how many
-  std::vector<float> t_;
   std::vector<Vec3> points_;
   std::size_t filled_ = 0;
   std::vector<std::uint16_t> signs_;

@@ -26,7 +26,11 @@
 
 namespace meso::implicit {
 
-struct ContourOptions {};
+struct ContourOptions {
+  /// Moves every vertex along its edge to within 1e-6 of the edge's length of where the field itself is zero, by about
+  /// six more evaluations of the field each.
+  bool polish = false;
+};
 
 struct ContourReport {
   std::uint64_t points = 0, triangles = 0;

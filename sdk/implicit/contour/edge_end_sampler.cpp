@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "edge_end_sampler.hpp"
+
+#include <algorithm>
+
+#include "bits.hpp"
+
+namespace meso::implicit {
+
+EdgeEndSampler::EdgeEndSampler(const Grid& grid, std::unique_ptr<GridSampler> signs)
+    : grid_(grid),
+      source_(std::move(signs)),
+      rows_(static_cast<std::size_t>(grid.nodes[1])),
+      words_((static_cast<std::size_t>(grid.nodes[0]) + 511) / 512 * 8),
+      row_values_(words_ * 64) {}
+
+void EdgeEndSampler::begin_slab(std::int32_t first, std::int32_t last) {
+  source_->begin_slab(first, last);
+  first_ = first;
+  last_ = last;
+  const std::size_t rows = static_cast<std::size_t>(last - first) * rows_;
+  signs_.assign(rows * words_, 0);
+  ends_.assign(rows * words_, 0);
+  for (std::int32_t k = first; k < last; ++k)
+    for (std::int32_t j = 0; j < grid_.nodes[1]; ++j) source_->row(j, k, row_values_.data(), at(j, k));
+  points_.clear();
+  first_value_.clear();
+  for (std::int32_t k = first; k < last; ++k)
+    for (std::int32_t j = 0; j < grid_.nodes[1]; ++j) mark_ends(j, k);
+  values_.resize(points_.size());
+  source_->values_at(points_, values_.data());
+}
+
+void EdgeEndSampler::mark_ends(std::int32_t j, std::int32_t k) {
+  const std::uint64_t* const row = at(j, k);
+  std::uint64_t* const ends = ends_.data() + (row - signs_.data());
+  const auto last_node = static_cast<std::size_t>(grid_.nodes[0]) - 1;
+  const auto differ = [&](std::int32_t dj, std::int32_t dk) {
+    if (j + dj < 0 || j + dj >= grid_.nodes[1] || k + dk < first_ || k + dk >= last_) return;
+    const std::uint64_t* const other = at(j + dj, k + dk);
+    for (std::size_t w = 0; w < words_; ++w) ends[w] |= row[w] ^ other[w];
+  };
+  differ(-1, 0), differ(1, 0), differ(0, -1), differ(0, 1);
+  for (std::size_t w = 0; w < words_; ++w) {
+    std::uint64_t crossed = row[w] ^ (row[w] << 1 | (w > 0 ? row[w - 1] >> 63 : row[0] & 1U));
+    if (w == (last_node + 1) / 64) crossed &= ~(std::uint64_t{1} << (last_node + 1) % 64);  // the edge out of the box
+    ends[w] |= crossed | crossed >> 1;
+    if (w > 0) ends[w - 1] |= crossed << 63;
+  }
+  first_value_.push_back(points_.size());
+  for (std::size_t w = 0; w < words_; ++w)
+    for_each_bit(ends[w], w, [&](std::size_t i) { points_.push_back(grid_.node(static_cast<std::int32_t>(i), j, k)); });
+}
+
+void EdgeEndSampler::row(std::int32_t j, std::int32_t k, float* values, std::uint64_t* inside) {
+  const std::uint64_t* const row = at(j, k);
+  std::copy_n(row, (static_cast<std::size_t>(grid_.nodes[0]) + 63) / 64, inside);
+  const auto offset = static_cast<std::size_t>(row - signs_.data());
+  const double* value = values_.data() + first_value_[offset / words_];
+  for (std::size_t w = 0; w < words_; ++w)
+    for_each_bit(ends_[offset + w], w, [&](std::size_t i) { values[i] = static_cast<float>(*value++); });
+}
+
+}  // namespace meso::implicit

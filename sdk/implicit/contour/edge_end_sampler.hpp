@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// For fields whose signs are cheap and whose values are dear: gets the signs of a whole slab first, then asks for
+// values only where an edge inside the slab is crossed, all at once.
+
+#include <tbb/cache_aligned_allocator.h>
+
+#include <vector>
+
+#include "layout.hpp"
+#include "meso/implicit/grid_source.hpp"
+
+namespace meso::implicit {
+
+class EdgeEndSampler final : public GridSampler {
+ public:
+  EdgeEndSampler(const Grid& grid, std::unique_ptr<GridSampler> signs);
+
+  void begin_slab(std::int32_t first, std::int32_t last) override;
+  void row(std::int32_t j, std::int32_t k, float* values, std::uint64_t* inside) override;
+  void values_at(std::span<const Vec3> points, double* out) override { source_->values_at(points, out); }
+
+ private:
+  [[nodiscard]] std::uint64_t* at(std::int32_t j, std::int32_t k) {
+    return signs_.data() + (static_cast<std::size_t>(k - first_) * rows_ + static_cast<std::size_t>(j)) * words_;
+  }
+  void mark_ends(std::int32_t j, std::int32_t k);
+
+  Grid grid_;
+  std::unique_ptr<GridSampler> source_;
+  std::size_t rows_, words_;
+  std::int32_t first_ = 0, last_ = 0;
+  std::vector<std::uint64_t, tbb::cache_aligned_allocator<std::uint64_t>> signs_;
+  std::vector<float, tbb::cache_aligned_allocator<float>> row_values_;  // not meant
+  std::vector<std::uint64_t> ends_;                                     // of crossed edges, by node
+  std::vector<std::size_t> first_value_;                                // by row
+  std::vector<Vec3> points_;
+  std::vector<double> values_;
+};
+
+}  // namespace meso::implicit
