@@ -7,6 +7,7 @@
 #include <string>
 
 #include "fields_for_test.hpp"
+#include "meso/implicit/flat_term.hpp"
 
 namespace meso::implicit {
 namespace {
@@ -44,12 +45,13 @@ TEST(Compile, SamplesAreTheTermsValues) {
   for (const std::string& text : fields)
     for (const bool strict : {false, true}) {
       const Term term = term_of(text);
+      const FlatTerm flat(term);
       const auto source = compile(term, grid, {.strict_math = strict, .pruning = Pruning::off});
       const Samples samples(*source, 8);
       for (std::int32_t k = 0; k < 9; ++k)
         for (std::int32_t j = 0; j < 21; ++j)
           for (std::int32_t i = 0; i < 77; ++i) {
-            const double truth = term.value(grid.node(i, j, k));
+            const double truth = flat.value(grid.node(i, j, k));
             const float value = samples.value(i, j, k);
             ASSERT_TRUE(is_near(value, truth)) << text << ": " << value << " for " << truth;
             ASSERT_TRUE(samples.is_inside(i, j, k) == (truth < 0) || std::abs(truth) < 1e-12) << text;

@@ -60,6 +60,11 @@ inline Lanes patched(Lanes result, Bits beyond, Lanes a, Lanes b, Function exact
   return result;
 }
 
+inline Lanes within_one(Lanes v) {
+  const Lanes below = v > 1 ? splat(1) : v;
+  return below < -1 ? splat(-1) : below;
+}
+
 /// sin r for |r| <= pi/2: its power series; the next term is below 2e-18.
 inline Lanes sine_series(Lanes r) {
   const Lanes s = r * r;
@@ -73,7 +78,7 @@ inline Lanes sine_series(Lanes r) {
   p = p * s - 1 / 5040.;
   p = p * s + 1 / 120.;
   p = p * s - 1 / 6.;
-  return r + r * (s * p);
+  return within_one(r + r * (s * p));
 }
 
 /// x - m pi, pi in three parts (Cody and Waite): m has at most 22 bits, so the first two products are exact.
