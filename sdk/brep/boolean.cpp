@@ -3,7 +3,6 @@
 
 #include <BOPAlgo_BOP.hxx>
 #include <BOPAlgo_PaveFiller.hxx>
-#include <Message_ProgressIndicator.hxx>
 #include <TopTools_IndexedDataMapOfShapeListOfShape.hxx>
 #include <algorithm>
 #include <array>
@@ -13,6 +12,7 @@
 #include "face_moments.hpp"
 #include "meso/base/number.hpp"
 #include "point_within.hpp"
+#include "stop_watch.hpp"
 
 namespace meso::brep {
 namespace {
@@ -22,19 +22,6 @@ constexpr double volume_tolerance = 1e-6;  ///< relative, of the identity
 // wrong.
 constexpr double edge_tolerance_mm = 1e-4;
 constexpr std::size_t points_each = 16;  ///< of a piece, looked at one by one
-
-/// Lets OpenCASCADE ask whether to go on.
-class StopWatch : public Message_ProgressIndicator {
- public:
-  explicit StopWatch(const RunOptions& run) : run_(run) {}
-  Standard_Boolean UserBreak() override { return run_.should_stop(); }
-
- protected:
-  void Show(const Message_ProgressScope&, const Standard_Boolean) override {}
-
- private:
-  const RunOptions& run_;
-};
 
 bool boxes_meet(const TopoDS_Shape& a, const TopoDS_Shape& b) {
   Bnd_Box box_a, box_b;

@@ -79,6 +79,7 @@ class PartFold {
     if (!lattice) return false;
     counts.placed += cells.size();
     counts.kept += lattice->kept;
+    counts.crossing += lattice->crossing;
     // Of a union nothing is loose that was not apart before; a cut body is one piece a solid at least.
     const std::size_t solids = lattice->body.solids.size(), whole = state.solids.size();
     lattice->body.fragments = whole == 0 || solids <= whole ? 0 : solids - whole;

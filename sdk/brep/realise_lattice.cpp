@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "boolean.hpp"
-#include "lattice/shape_lattice.hpp"
+#include "lattice/clipped_lattice.hpp"
 #include "solid_primitive.hpp"
 #include "solid_shape.hpp"
 
@@ -217,14 +217,15 @@ std::optional<FirstCell> first_cell(const eval::CellStream& cells, DiagnosticSin
   return out;
 }
 
-/// What the aligned case consists of.
+/// A lattice of boxes side by side, and the body in the frame of its first cell.
 struct Found {
   AlignedLattice lattice;
   CellShape cell;
-  std::shared_ptr<const Blocks> blocks;
+  Solids body;
+  std::shared_ptr<const Blocks> blocks;  ///< where the body's faces all lie on planes of the boxes
 };
 
-std::optional<Found> find_aligned(const Solids& macrostructure, const eval::CellStream& cells,
+std::optional<Found> find_lattice(const Solids& macrostructure, const eval::CellStream& cells,
                                   const SolidContext& context) {
   const bool cut = cells.unit_cell().clip_to_box.value_or(false);
   const auto steps = macrostructure.empty() && !cut ? std::nullopt : cells.lattice();
@@ -237,12 +238,13 @@ std::optional<Found> find_aligned(const Solids& macrostructure, const eval::Cell
   for (const TopoDS_Shape& solid : macrostructure)
     in_cell_frame.push_back(mapped(solid, inverse(lattice->world_from_cell)));
   if (macrostructure.empty()) in_cell_frame.push_back(all_boxes(*lattice));
-  const auto planes = face_planes(in_cell_frame, *lattice);
-  if (!planes) return {};
   auto cell = repeated_cell(first->shape, lattice->box, context);
   if (!cell) return {};
   cell->cut_to_box = cut;
-  return Found{*lattice, std::move(*cell), std::make_shared<const Blocks>(in_cell_frame, *lattice, *planes)};
+  std::shared_ptr<const Blocks> blocks;
+  if (const auto planes = face_planes(in_cell_frame, *lattice))
+    blocks = std::make_shared<const Blocks>(in_cell_frame, *lattice, *planes);
+  return Found{*lattice, std::move(*cell), std::move(in_cell_frame), std::move(blocks)};
 }
 
 void place(Body& body, const Affine& world_from_body) {
@@ -287,23 +289,34 @@ Body part_of(const Body& body, IndexTest takes) {
 
 std::optional<LatticePart> lattice_part(const Solids& macrostructure, const eval::CellStream& cells,
                                         const std::optional<MeshFineness>& mesh, const SolidContext& context) {
-  const auto found = find_aligned(macrostructure, cells, context);
+  const auto found = find_lattice(macrostructure, cells, context);
   if (!found) return {};
-  if (found->blocks->kept() == 0) return LatticePart{};
   const auto& count = found->lattice.count;
-  const LatticeSet set{.min = {0, 0, 0},
-                       .max = {count[0] - 1, count[1] - 1, count[2] - 1},
-                       .inside = [blocks = found->blocks](Index3 index) { return blocks->inside(index); }};
-  auto body = lattice_body(found->cell, set, {.mesh = mesh}, context.sink);
-  if (!body) return {};
-  place(*body, found->lattice.world_from_cell);
-  return LatticePart{std::move(*body), found->blocks->kept()};
+  const Index3 last{count[0] - 1, count[1] - 1, count[2] - 1};
+  LatticePart out;
+  if (found->blocks) {
+    out.kept = found->blocks->kept();
+    if (out.kept == 0) return out;
+    const LatticeSet set{.min = {0, 0, 0}, .max = last, .inside = [blocks = found->blocks](Index3 index) {
+                           return blocks->inside(index);
+                         }};
+    auto body = lattice_body(found->cell, set, {.mesh = mesh}, context.sink);
+    if (!body) return {};
+    out.body = std::move(*body);
+  } else {
+    auto clipped =
+        clipped_lattice_body(found->cell, last, found->body, {.mesh = mesh, .reuse = true}, context.run, context.sink);
+    if (!clipped) return {};
+    out = {std::move(clipped->body), clipped->kept, clipped->crossing};
+  }
+  place(out.body, found->lattice.world_from_cell);
+  return out;
 }
 
 std::optional<LatticeSample> lattice_sample(const Solids& macrostructure, const eval::CellStream& cells,
                                             const std::optional<MeshFineness>& mesh, const SolidContext& context) {
-  const auto found = find_aligned(macrostructure, cells, context);
-  if (!found) return {};
+  const auto found = find_lattice(macrostructure, cells, context);
+  if (!found || !found->blocks) return {};
   LatticeSample out{{}, found->blocks->kept()};
   if (out.kept == 0) return out;
   // A block of n^3 cells has 6 n^2 walls: 8 a + 64 b = kept, 24 a + 96 b = walls.

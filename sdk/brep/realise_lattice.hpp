@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// The aligned case: a lattice whose cell boxes are each wholly inside or outside the macrostructure, because all faces
-// of the macrostructure lie on planes of the cell boxes. Private.
+// Lattices whose cell boxes stand side by side. In the aligned case all faces of the macrostructure lie on planes of
+// the boxes, and each box is wholly inside or outside; else boxes that the boundary crosses are clipped. Private.
 
 #include <optional>
 
@@ -15,11 +15,12 @@ namespace meso::brep {
 struct LatticePart {
   Body body;
   std::uint64_t kept = 0;
+  std::uint64_t crossing = 0;
 };
 
-/// Macrostructure n union of the cells, or without a macrostructure the union of cells that are cut to their boxes, if
-/// the case is the aligned one; else nothing, and no error in the sink. Errors
-/// of evaluation are reported. May throw Standard_Failure.
+/// Macrostructure n union of the cells, or without a macrostructure the union of cells that are cut to their boxes; or
+/// nothing, and no error in the sink, where that is not such a lattice. Errors of evaluation are reported. May throw
+/// Standard_Failure.
 [[nodiscard]] std::optional<LatticePart> lattice_part(const Solids& macrostructure, const eval::CellStream& cells,
                                                       const std::optional<MeshFineness>& mesh,
                                                       const SolidContext& context);

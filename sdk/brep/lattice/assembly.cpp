@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lattice/assembly.hpp"
 
+#include <algorithm>
 #include <map>
 
 #include "meso/brep/instance_map.hpp"
@@ -24,6 +25,7 @@ class Layout {
       : quotient_(std::move(quotient)), cells_(std::move(cells)), kinds_(std::move(kinds)) {
     for (const CellKind& kind : quotient_.kinds)
       clusters_ = std::max(clusters_, static_cast<std::uint32_t>(kind.cluster_lumps.size()));
+    for (std::vector<EdgeUse>& uses : quotient_.uses) std::ranges::stable_sort(uses, {}, place_of);
   }
 
   [[nodiscard]] const Quotient& quotient() const { return quotient_; }
@@ -44,6 +46,24 @@ class Layout {
   [[nodiscard]] bool shows(const Index3& cell, const CellFace& face) const {
     return face.axis < 0 || !cancelled(cell, face);
   }
+  /// Visits the uses of a template's edge that stands `at` by the cells that are there.
+  template <typename Visit>
+  [[nodiscard]] bool visit_uses(std::uint32_t edge, const Index3& at, const Visit& visit) const {
+    const std::vector<EdgeUse>& uses = quotient_.uses[edge];
+    for (auto from = uses.begin(); from != uses.end();) {
+      const Index3 beside = from->face_cell;
+      const auto to = std::upper_bound(from, uses.end(), beside,
+                                       [](const Index3& a, const EdgeUse& use) { return a < use.face_cell; });
+      if (const std::uint32_t number = cells_.number(at + beside); number != none) {
+        const std::uint32_t here = kind(at + beside);
+        const auto [first, last] = std::ranges::equal_range(from, to, here, {}, &EdgeUse::kind);
+        for (auto use = first; use != last; ++use)
+          if (!visit(number, *use)) return false;
+      }
+      from = to;
+    }
+    return true;
+  }
   /// Every piece of the natural face that `cell` owns is there.
   [[nodiscard]] bool complete(const NaturalFace& natural, const Index3& cell) const {
     return std::all_of(natural.parts.begin(), natural.parts.end(), [&](const NaturalFace::Part& part) {
@@ -51,6 +71,8 @@ class Layout {
       return number != none && kind(cell + part.offset) == 0 && !split_.contains({number, part.piece});
     });
   }
+
+  static std::pair<Index3, std::uint32_t> place_of(const EdgeUse& use) { return {use.face_cell, use.kind}; }
 
   /// Faces of one cluster in one cell.
   template <typename Callback>
@@ -131,18 +153,18 @@ bool Stitcher::stitch_edge(std::uint32_t from, std::uint32_t edge, const Index3&
   const Quotient& quotient = layout_.quotient();
   uses_.clear();
   std::size_t showing = 0;
-  for (const EdgeUse& use : quotient.uses[edge]) {
+  const auto take = [&](std::uint32_t number, const EdgeUse& use) {
+    if (number < from) return false;
     const Index3 cell = at + use.face_cell;
-    const std::uint32_t number = layout_.cells().number(cell);
-    if (number == none || layout_.kind(cell) != use.kind) continue;
-    if (number < from) return true;  // that cell has seen to it
     const CellFace& face = quotient.kinds[use.kind].faces[use.face];
     Use found{.cell = number, .face = use.face, .node = layout_.node(number, face), .reversed = use.reversed};
     found.shows = layout_.shows(cell, face);
     if (!found.shows) found.partner_cell = layout_.cells().number(across(cell, face));
     showing += found.shows;
     uses_.push_back(found);
-  }
+    return true;
+  };
+  if (!layout_.visit_uses(edge, at, take)) return true;  // an earlier cell has seen to it
   if (showing == 0) return true;
   if (showing != 2) return stitch_sheets(edge, at);
   const Use* first = nullptr;
@@ -282,25 +304,24 @@ std::vector<ShellNodes> collect_shells(const Layout& layout, UnionFind& nodes, U
 
 }  // namespace
 
-CellKinds::CellKinds(const Reach& reach, const KeptCells& cells) {
-  for (const Reach::Neighbour& neighbour : reach.neighbours) shifts_.push_back(neighbour.shift);
-  parts_.push_back(reach.parts_with(~std::uint64_t{0}));
-  if (shifts_.empty()) return;
+CellKinds::CellKinds(const Reach& reach, const KeptCells& cells) : kinds_(cells.count(), 0) {
+  parts_.push_back(reach.parts_with(true, ~std::uint64_t{0}));
+  std::map<std::pair<bool, std::uint64_t>, std::uint32_t> known{{{true, ~std::uint64_t{0}}, 0}};
   for (std::uint32_t n = 0; n < cells.count(); ++n) {
-    const std::uint64_t mask = present(cells.cell(n), cells);
-    if (kinds_.contains(mask)) continue;
-    const std::vector<std::uint32_t> parts = reach.parts_with(mask);
-    const auto known = std::find(parts_.begin(), parts_.end(), parts);
-    kinds_[mask] = static_cast<std::uint32_t>(known - parts_.begin());
-    if (known == parts_.end()) parts_.push_back(parts);
+    const Index3& cell = cells.cell(n);
+    const bool itself = cells.in_pattern(cell);
+    const std::vector<Reach::Neighbour>& others = itself ? reach.neighbours : reach.rim;
+    std::uint64_t present = ~std::uint64_t{0};  // neighbours that do not matter count as being there
+    for (std::size_t i = 0; i < others.size(); ++i)
+      if (!cells.in_pattern(cell + others[i].shift)) present &= ~(std::uint64_t{1} << i);
+    const auto [it, fresh] = known.try_emplace({itself, present}, 0);
+    if (fresh) {
+      const std::vector<std::uint32_t> parts = reach.parts_with(itself, present);
+      it->second = static_cast<std::uint32_t>(std::find(parts_.begin(), parts_.end(), parts) - parts_.begin());
+      if (it->second == parts_.size()) parts_.push_back(parts);
+    }
+    kinds_[n] = it->second;
   }
-}
-
-std::uint64_t CellKinds::present(const Index3& cell, const KeptCells& cells) const {
-  std::uint64_t mask = 0;
-  for (std::size_t n = 0; n < shifts_.size(); ++n)
-    if (cells.in_range(cell + shifts_[n])) mask |= std::uint64_t{1} << n;
-  return mask;
 }
 
 std::optional<Body> assemble(Quotient quotient, KeptCells cells, CellKinds kinds, DiagnosticSink& sink) {

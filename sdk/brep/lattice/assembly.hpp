@@ -10,22 +10,21 @@
 
 namespace meso::brep {
 
-/// The kind of box each cell has, by which of the neighbours that matter exist in the pattern.
+/// The kind of box each cell has: at first by which of the cells that matter to it exist in the pattern.
 class CellKinds {
  public:
   CellKinds(const Reach& reach, const KeptCells& cells);
-  /// The parts of each kind; kind 0 has all.
+  /// The parts of each of these kinds; kind 0 has all, some may have none.
   [[nodiscard]] const std::vector<std::vector<std::uint32_t>>& parts() const { return parts_; }
   [[nodiscard]] std::uint32_t of(const Index3& cell, const KeptCells& cells) const {
-    return parts_.size() == 1 ? 0 : kinds_.at(present(cell, cells));
+    return kinds_[cells.number(cell)];
   }
+  /// Of the cell with that number, from now on.
+  void set(std::uint32_t number, std::uint32_t kind) { kinds_[number] = kind; }
 
  private:
-  [[nodiscard]] std::uint64_t present(const Index3& cell, const KeptCells& cells) const;
-
-  std::vector<Index3> shifts_;  // of the neighbours
   std::vector<std::vector<std::uint32_t>> parts_;
-  std::map<std::uint64_t, std::uint32_t> kinds_;
+  std::vector<std::uint32_t> kinds_;  ///< by the numbers of the cells
 };
 
 /// Empty, with GEOMETRY_NOT_REPEATABLE, if some edge would not be used exactly twice by every sheet of surface that

@@ -157,10 +157,12 @@ std::optional<CellShape> cell_shape(const LatticeCell& cell, DiagnosticSink& sin
   return shape;
 }
 
-std::vector<std::uint32_t> Reach::parts_with(std::uint64_t present) const {
-  std::set<std::uint32_t> all(own.begin(), own.end());
-  for (std::size_t n = 0; n < neighbours.size(); ++n)
-    if (present >> n & 1) all.insert(neighbours[n].parts.begin(), neighbours[n].parts.end());
+std::vector<std::uint32_t> Reach::parts_with(bool itself, std::uint64_t present) const {
+  std::set<std::uint32_t> all;
+  if (itself) all.insert(own.begin(), own.end());
+  const std::vector<Neighbour>& others = itself ? neighbours : rim;
+  for (std::size_t n = 0; n < others.size(); ++n)
+    if (present >> n & 1) all.insert(others[n].parts.begin(), others[n].parts.end());
   return {all.begin(), all.end()};
 }
 
@@ -175,8 +177,7 @@ Reach reach_of(const CellShape& cell) {
   }
   Reach reach;
   std::vector<CellPrimitive> placed;  // parallel to reach.parts, for beams
-  const auto add_from = [&](const Index3& shift, std::vector<std::uint32_t>& into) {
-    const bool is_own = shift == Index3{};
+  const auto add_from = [&](const Index3& shift, bool to_own, std::vector<std::uint32_t>& into) {
     for (std::size_t s = 0; s < cell.solids.size(); ++s) {
       const Vec3 by{shift[0] * size.x, shift[1] * size.y, shift[2] * size.z};
       bool reaches = true;
@@ -185,12 +186,14 @@ Reach reach_of(const CellShape& cell) {
                   boxes[s].max[i] + by[i] > cell.box.min[i] + tolerance;
       if (!reaches) continue;
       if (cell.primitives.empty()) {
-        into.push_back(static_cast<std::uint32_t>(reach.parts.size()));
-        reach.parts.push_back({s, shift});
+        const auto known = std::ranges::find_if(
+            reach.parts, [&](const Reach::Part& part) { return part.solid == s && part.shift == shift; });
+        into.push_back(static_cast<std::uint32_t>(known - reach.parts.begin()));
+        if (known == reach.parts.end()) reach.parts.push_back({s, shift});
         continue;
       }
       const CellPrimitive primitive = translated(cell.primitives[s], by);
-      if (!is_own && covered(primitive, cell.primitives, cell.box)) continue;
+      if (to_own && covered(primitive, cell.primitives, cell.box)) continue;
       const auto known = std::find_if(placed.begin(), placed.end(),
                                       [&](const CellPrimitive& other) { return same(primitive, other, tolerance); });
       into.push_back(static_cast<std::uint32_t>(known - placed.begin()));
@@ -199,7 +202,7 @@ Reach reach_of(const CellShape& cell) {
       reach.parts.push_back({s, shift});
     }
   };
-  add_from({}, reach.own);
+  add_from({}, false, reach.own);
   if (cell.cut_to_box) return reach;
   Index3 low{}, high{};  // shifts under which anything can reach the box
   for (std::size_t i = 0; i < 3; ++i) {
@@ -211,8 +214,11 @@ Reach reach_of(const CellShape& cell) {
       for (std::int32_t z = low[2]; z <= high[2]; ++z) {
         Reach::Neighbour neighbour{.shift = {x, y, z}, .parts = {}};
         if (neighbour.shift == Index3{}) continue;
-        add_from(neighbour.shift, neighbour.parts);
+        add_from(neighbour.shift, true, neighbour.parts);
         if (!neighbour.parts.empty()) reach.neighbours.push_back(neighbour);
+        neighbour.parts.clear();
+        add_from(neighbour.shift, false, neighbour.parts);
+        if (!neighbour.parts.empty()) reach.rim.push_back(neighbour);
       }
   return reach;
 }

@@ -40,9 +40,11 @@ struct Reach {
   std::vector<Part> parts;  ///< no two alike
   std::vector<std::uint32_t> own;
   std::vector<Neighbour> neighbours;  ///< only those that add something
+  std::vector<Neighbour> rim;         ///< what all of them add where the cell itself does not exist
 
-  /// Sorted; bit n of `present` says whether neighbour n exists.
-  [[nodiscard]] std::vector<std::uint32_t> parts_with(std::uint64_t present) const;
+  /// Of a cell of the pattern, or of one beyond it; bit n of `present`: neighbour n of the one list or the other
+  /// exists. Sorted.
+  [[nodiscard]] std::vector<std::uint32_t> parts_with(bool itself, std::uint64_t present) const;
 };
 [[nodiscard]] Reach reach_of(const CellShape& cell);
 

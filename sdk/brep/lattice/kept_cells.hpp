@@ -14,27 +14,27 @@ class KeptCells {
   static constexpr std::uint32_t none = ~std::uint32_t{0};
 
   /// Asks `set.inside` once for every index of the range.
-  explicit KeptCells(const LatticeSet& set) : min_(set.min), max_(set.max) {
+  explicit KeptCells(const LatticeSet& set) : KeptCells(set, set.min, set.max, set.inside) {}
+  /// Boxes `min` ... `max`, also such as the pattern's range leaves out; asks `kept` once for each.
+  KeptCells(const LatticeSet& pattern, const Index3& min, const Index3& max, const std::function<bool(Index3)>& kept)
+      : pattern_min_(pattern.min), pattern_max_(pattern.max), min_(min), max_(max) {
     for (std::size_t i = 0; i < 3; ++i) extent_[i] = static_cast<std::size_t>(std::max(0, max_[i] - min_[i] + 1));
     numbers_.assign(extent_[0] * extent_[1] * extent_[2], none);
     std::size_t slot = 0;
     for (Index3 cell = min_; cell[0] <= max_[0]; ++cell[0])
       for (cell[1] = min_[1]; cell[1] <= max_[1]; ++cell[1])
         for (cell[2] = min_[2]; cell[2] <= max_[2]; ++cell[2], ++slot) {
-          if (!set.inside(cell)) continue;
+          if (!kept(cell)) continue;
           numbers_[slot] = static_cast<std::uint32_t>(cells_.size());
           cells_.push_back(cell);
         }
   }
 
-  [[nodiscard]] bool in_range(const Index3& cell) const {
-    for (std::size_t i = 0; i < 3; ++i)
-      if (cell[i] < min_[i] || cell[i] > max_[i]) return false;
-    return true;
-  }
+  /// Whether the pattern has that cell, kept or not.
+  [[nodiscard]] bool in_pattern(const Index3& cell) const { return within(cell, pattern_min_, pattern_max_); }
   /// `none` where the cell is not kept.
   [[nodiscard]] std::uint32_t number(const Index3& cell) const {
-    if (!in_range(cell)) return none;
+    if (!within(cell, min_, max_)) return none;
     const auto at = [&](std::size_t i) { return static_cast<std::size_t>(cell[i] - min_[i]); };
     return numbers_[(at(0) * extent_[1] + at(1)) * extent_[2] + at(2)];
   }
@@ -42,7 +42,13 @@ class KeptCells {
   [[nodiscard]] std::uint32_t count() const { return static_cast<std::uint32_t>(cells_.size()); }
 
  private:
-  Index3 min_, max_;
+  static bool within(const Index3& cell, const Index3& min, const Index3& max) {
+    for (std::size_t i = 0; i < 3; ++i)
+      if (cell[i] < min[i] || cell[i] > max[i]) return false;
+    return true;
+  }
+
+  Index3 pattern_min_, pattern_max_, min_, max_;
   std::array<std::size_t, 3> extent_{};
   std::vector<std::uint32_t> numbers_;
   std::vector<Index3> cells_;

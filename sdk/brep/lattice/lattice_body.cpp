@@ -16,7 +16,9 @@ std::optional<Body> lattice_body(const CellShape& cell, const LatticeSet& set, c
     return {};
   }
   CellKinds kinds(reach, cells);
-  std::optional<Quotient> quotient = build_quotient(cell, reach, kinds.parts(), options, sink);
+  const auto solids = kind_solids(cell, reach, kinds.parts(), sink);
+  if (!solids) return {};
+  std::optional<Quotient> quotient = build_quotient(cell, *solids, options, cell.tolerance(), sink);
   if (!quotient) return {};
   return assemble(std::move(*quotient), std::move(cells), std::move(kinds), sink);
 }

@@ -2,6 +2,7 @@
 #include "lattice/orbit_matcher.hpp"
 
 #include <GeomAPI_ProjectPointOnCurve.hxx>
+#include <optional>
 
 #include "geometry_values.hpp"
 #include "meso/brep/instance_map.hpp"
@@ -22,6 +23,18 @@ std::vector<Vec3> points_along(const TopoDS_Edge& edge) {
     points.push_back(to_vec(curve.Value((1 - t) * curve.FirstParameter() + t * curve.LastParameter())));
   }
   return points;
+}
+
+/// Points closer than `size` are in one small box or in two that touch.
+std::array<std::int64_t, 3> small_box(Vec3 p, double size) {
+  std::array<std::int64_t, 3> box{};
+  for (std::size_t i = 0; i < 3; ++i) box[i] = static_cast<std::int64_t>(std::floor(p[i] / size));
+  return box;
+}
+std::uint64_t hash_of(const std::array<std::int64_t, 3>& box) {
+  std::uint64_t hash = 0;
+  for (const std::int64_t i : box) hash = (hash ^ static_cast<std::uint64_t>(i)) * 0x9e3779b97f4a7c15u;
+  return hash;
 }
 
 /// Whether `p` is on the edge, and whether its direction there agrees with `along`.
@@ -48,13 +61,23 @@ OrbitMatcher::VertexMatch OrbitMatcher::match_vertex(Vec3 p) {
     found.offset[i] = static_cast<std::int32_t>(std::floor((p[i] - origin_[i] + tolerance_) / size));
   }
   const Vec3 home = p - cell_origin(geometry_, found.offset);
-  for (std::size_t v = 0; v < geometry_.vertices.size(); ++v) {
-    if (norm(geometry_.vertices[v] - home) > tolerance_) continue;
-    found.vertex = static_cast<std::uint32_t>(v);
+  const std::array<std::int64_t, 3> at = small_box(home, tolerance_);
+  std::optional<std::uint32_t> known;
+  for (std::int64_t x = at[0] - 1; x <= at[0] + 1; ++x)
+    for (std::int64_t y = at[1] - 1; y <= at[1] + 1; ++y)
+      for (std::int64_t z = at[2] - 1; z <= at[2] + 1; ++z) {
+        const auto near = vertices_.find(hash_of({x, y, z}));
+        if (near == vertices_.end()) continue;
+        for (const std::uint32_t v : near->second)
+          if (norm(geometry_.vertices[v] - home) <= tolerance_) known = std::min(v, known.value_or(v));
+      }
+  if (known) {
+    found.vertex = *known;
     return found;
   }
   found.vertex = static_cast<std::uint32_t>(geometry_.vertices.size());
   geometry_.vertices.push_back(home);
+  vertices_[hash_of(at)].push_back(found.vertex);
   return found;
 }
 

@@ -3,6 +3,7 @@
 // Finds the vertex or edge of the template that an OpenCASCADE vertex or edge is, up to a lattice translation. Private.
 
 #include <map>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -39,6 +40,7 @@ class OrbitMatcher {
   std::vector<std::vector<Vec3>>& samples_;
   Vec3 origin_;
   double tolerance_;
+  std::unordered_map<std::uint64_t, std::vector<std::uint32_t>> vertices_;  ///< by the small box they are in
   std::map<std::pair<std::uint32_t, std::uint32_t>, std::vector<std::uint32_t>> edges_;  ///< by their two vertices
   std::vector<TopoDS_Edge> shapes_;                                                      ///< first edge of each orbit
 };

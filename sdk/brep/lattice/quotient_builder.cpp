@@ -25,11 +25,12 @@ TopoDS_Shell all_faces(const TopoDS_Shape& solid) {
 
 class Builder {
  public:
-  Builder(const CellShape& cell, Quotient& quotient)
+  Builder(const CellShape& cell, Quotient& quotient, double tolerance)
       : cell_(cell),
         quotient_(quotient),
         geometry_(*quotient.geometry),
-        matcher_(geometry_, quotient.samples, cell.box.min, cell.tolerance()) {}
+        matcher_(geometry_, quotient.samples, cell.box.min, tolerance),
+        tolerance_(tolerance) {}
 
   /// Matches the edges; false if the solid is not closed in itself.
   bool add_kind(const TopoDS_Shape& solid);
@@ -46,7 +47,7 @@ class Builder {
   };
 
   [[nodiscard]] bool on_wall(Vec3 p, std::size_t axis, int side) const {
-    return std::fabs(p[axis] - (side ? cell_.box.max : cell_.box.min)[axis]) < 4 * cell_.tolerance();
+    return std::fabs(p[axis] - (side ? cell_.box.max : cell_.box.min)[axis]) < 4 * tolerance_;
   }
   [[nodiscard]] bool on_boundary(const TopoDS_Edge& edge) const;
   void classify(CellFace& face, const FaceTemplate& value, const TopoDS_Face& shape) const;
@@ -57,6 +58,7 @@ class Builder {
   Quotient& quotient_;
   Template& geometry_;
   OrbitMatcher matcher_;
+  double tolerance_;
   std::vector<Source> sources_;
   std::vector<bool> boundary_;  // per edge of the template
   std::map<std::vector<std::int32_t>, std::uint32_t> wall_orbits_;
@@ -149,7 +151,7 @@ bool Builder::add_faces() {
           const OrbitMatcher::Match& match = source.matches[use.edge];
           use = {.edge = match.edge, .offset = match.offset, .reversed = use.reversed != match.flipped};
         }
-      if (polygons_ && !share_points(value, geometry_, *polygons_, 20 * cell_.tolerance()))
+      if (polygons_ && !share_points(value, geometry_, *polygons_, 20 * tolerance_))
         throw Standard_Failure("a face has not the points of its edges");
       const Vec3 moment = value.moments.volume_moment;
       kind.volume += (moment.x + moment.y + moment.z) / 3;
@@ -226,23 +228,32 @@ bool walls_overlap(const CellKind& low, const CellKind& high, int axis, Vec3 siz
   return false;
 }
 
-std::optional<Quotient> build_quotient(const CellShape& cell, const Reach& reach,
-                                       const std::vector<std::vector<std::uint32_t>>& kinds,
-                                       const LatticeOptions& options, DiagnosticSink& sink) {
+std::optional<std::vector<TopoDS_Shape>> kind_solids(const CellShape& cell, const Reach& reach,
+                                                     const std::vector<std::vector<std::uint32_t>>& kinds,
+                                                     DiagnosticSink& sink) {
+  std::vector<TopoDS_Shape> solids;
+  for (const std::vector<std::uint32_t>& parts : kinds) {
+    const std::optional<TopoDS_Shape> solid = solid_in_box(cell, reach, parts, sink);
+    if (!solid) return {};
+    solids.push_back(*solid);
+  }
+  try {
+    if (divide_alike(solids, cell)) return solids;
+  } catch (const Standard_Failure&) {
+  }
+  sink.report({.code = Code::geometry_not_repeatable, .args = {"the walls of the unit cell cannot be divided alike"}});
+  return {};
+}
+
+std::optional<Quotient> build_quotient(const CellShape& cell, const std::vector<TopoDS_Shape>& solids,
+                                       const LatticeOptions& options, double tolerance, DiagnosticSink& sink) {
   const Vec3 size = cell.size();
   Quotient quotient;
   quotient.tolerance = cell.tolerance();
   quotient.geometry->lattice = Mat3::from_columns({size.x, 0, 0}, {0, size.y, 0}, {0, 0, size.z});
   std::string fault;
   try {
-    Builder builder(cell, quotient);
-    std::vector<TopoDS_Shape> solids;
-    for (const std::vector<std::uint32_t>& parts : kinds) {
-      const std::optional<TopoDS_Shape> solid = solid_in_box(cell, reach, parts, sink);
-      if (!solid) return {};
-      solids.push_back(*solid);
-    }
-    if (!divide_alike(solids, cell)) fault = "the walls of the unit cell cannot be divided alike";
+    Builder builder(cell, quotient, tolerance);
     for (const TopoDS_Shape& solid : solids)
       if (!builder.add_kind(solid)) fault = "a face of the unit cell bounds no solid";
     if (options.mesh) builder.add_meshes(*options.mesh);

@@ -8,10 +8,16 @@
 
 namespace meso::brep {
 
-/// `kinds` lists the parts of each kind of box, the one with all parts first. Empty, with GEOMETRY_NOT_REPEATABLE, if a
-/// solid cannot be made or is not a manifold.
-[[nodiscard]] std::optional<Quotient> build_quotient(const CellShape& cell, const Reach& reach,
-                                                     const std::vector<std::vector<std::uint32_t>>& kinds,
-                                                     const LatticeOptions& options, DiagnosticSink& sink);
+/// What each kind of box holds: `kinds` lists the parts, the one with all parts first. Edges of opposite walls end
+/// alike. A kind without parts is a null shape. Empty, with GEOMETRY_NOT_REPEATABLE, if a solid cannot be made.
+[[nodiscard]] std::optional<std::vector<TopoDS_Shape>> kind_solids(const CellShape& cell, const Reach& reach,
+                                                                   const std::vector<std::vector<std::uint32_t>>& kinds,
+                                                                   DiagnosticSink& sink);
+
+/// Points of two solids closer than `tolerance` are one. Empty, with GEOMETRY_NOT_REPEATABLE, if a solid is not a
+/// manifold.
+[[nodiscard]] std::optional<Quotient> build_quotient(const CellShape& cell, const std::vector<TopoDS_Shape>& solids,
+                                                     const LatticeOptions& options, double tolerance,
+                                                     DiagnosticSink& sink);
 
 }  // namespace meso::brep

@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lattice/clipped_lattice.hpp"
+
+#include <atomic>
+#include <deque>
+#include <map>
+#include <thread>
+
+#include "boolean.hpp"
+#include "lattice/assembly.hpp"
+#include "lattice/cell_clipper.hpp"
+#include "lattice/clip_signature.hpp"
+#include "lattice/quotient_builder.hpp"
+
+namespace meso::brep {
+namespace {
+
+/// One boolean: a kind of box and a cell that stands for all that see the same.
+struct ClipTask {
+  std::uint32_t kind = 0;
+  Index3 cell{};
+  ClippedCell result;
+};
+
+/// The boxes that both the body and anything of the pattern can reach.
+CellGrid grid_for(const CellShape& cell, const Reach& reach, const Index3& last,
+                  const std::vector<TopoDS_Shape>& body) {
+  CellGrid grid{.first = cell.box, .min = {}, .max = last, .tolerance = cell.tolerance()};
+  for (const Reach::Neighbour& neighbour : reach.rim)
+    for (std::size_t i = 0; i < 3; ++i) {
+      grid.min[i] = std::min(grid.min[i], -neighbour.shift[i]);
+      grid.max[i] = std::max(grid.max[i], last[i] - neighbour.shift[i]);
+    }
+  Box3 all;
+  for (const TopoDS_Shape& solid : body) {
+    const Box3 box = box_of(solid);
+    all.extend(box.min);
+    all.extend(box.max);
+  }
+  for (std::size_t i = 0; i < 3; ++i) {
+    const auto box_at = [&](double p) { return std::floor((p - cell.box.min[i]) / cell.size()[i]); };
+    grid.min[i] = static_cast<std::int32_t>(std::max<double>(grid.min[i], box_at(all.min[i] - grid.tolerance)));
+    grid.max[i] = static_cast<std::int32_t>(std::min<double>(grid.max[i], box_at(all.max[i] + grid.tolerance)));
+  }
+  return grid;
+}
+
+/// Numbers of kinds, sorted by the pieces of the body that the cells see, in the order of the cells.
+class ClipPlan {
+ public:
+  ClipPlan(const BodySurface& surface, const KeptCells& cells, const CellKinds& kinds, const CellGrid& grid,
+           bool reuse) {
+    const ClipSignatures signatures(surface.body(), grid);
+    std::map<ClipSignatures::Signature, std::uint32_t> known;
+    task_of_.assign(cells.count(), KeptCells::none);
+    for (std::uint32_t n = 0; n < cells.count(); ++n) {
+      const Index3& cell = cells.cell(n);
+      if (surface.place(cell) != BoxPlace::crossing) continue;
+      ClipSignatures::Signature key = signatures.of(cell, surface.faces(cell));
+      key.push_back(kinds.of(cell, cells));
+      if (!reuse) key.push_back(n);
+      const auto [it, fresh] = known.emplace(std::move(key), static_cast<std::uint32_t>(tasks.size()));
+      if (fresh) tasks.push_back({.kind = kinds.of(cell, cells), .cell = cell, .result = {}});
+      task_of_[n] = it->second;
+    }
+  }
+  /// `KeptCells::none` for a whole cell.
+  [[nodiscard]] std::uint32_t task_of(std::uint32_t cell) const { return task_of_[cell]; }
+
+  std::vector<ClipTask> tasks;
+
+ private:
+  std::vector<std::uint32_t> task_of_;
+};
+
+/// All tasks, by as many threads as the run allows; which thread does which does not show in the results.
+void clip_all(std::vector<ClipTask>& tasks, const std::vector<TopoDS_Shape>& solids, const BodySurface& surface,
+              const CellGrid& grid, const RunOptions& run) {
+  const std::size_t wanted = run.jobs == 0 ? std::max(1u, std::thread::hardware_concurrency()) : run.jobs;
+  const std::size_t count = std::min(wanted, tasks.size());
+  std::deque<CellClipper> clippers;  // they cannot be moved
+  for (std::size_t i = 0; i < count; ++i) clippers.emplace_back(solids, surface, grid, run);
+  std::atomic<std::size_t> next{0};
+  std::atomic<bool> failed{false};
+  const auto work = [&](CellClipper& clipper) {
+    for (std::size_t i = next++; i < tasks.size() && !failed && !run.should_stop(); i = next++) {
+      ClipTask& task = tasks[i];
+      task.result = clipper.clip(task.kind, task.cell, surface.faces(task.cell));
+      if (!task.result.fault.empty()) failed = true;
+    }
+  };
+  std::vector<std::thread> others;
+  for (std::size_t i = 1; i < count; ++i) others.emplace_back(work, std::ref(clippers[i]));
+  if (count > 0) work(clippers[0]);
+  for (std::thread& thread : others) thread.join();
+}
+
+}  // namespace
+
+std::optional<ClippedLattice> clipped_lattice_body(const CellShape& cell, const Index3& last,
+                                                   const std::vector<TopoDS_Shape>& body, const ClipOptions& options,
+                                                   const RunOptions& run, DiagnosticSink& sink) {
+  const auto fault = [&](std::string what) {
+    sink.report({.code = Code::geometry_not_repeatable, .args = {std::move(what)}});
+    return std::nullopt;
+  };
+  const Reach reach = reach_of(cell);
+  if (std::max(reach.neighbours.size(), reach.rim.size()) > 64)
+    return fault("the unit cell reaches too far beyond its box");
+  const CellGrid grid = grid_for(cell, reach, last, body);
+  if (grid.count() == 0) return ClippedLattice{};
+  if (grid.count() > run.max_cells) return fault("the body meets too many boxes");
+  const BodySurface surface(body, grid);
+  KeptCells cells({.min = {}, .max = last, .inside = {}}, grid.min, grid.max,
+                  [&](const Index3& index) { return surface.place(index) != BoxPlace::outside; });
+  CellKinds kinds(reach, cells);
+  auto solids = kind_solids(cell, reach, kinds.parts(), sink);
+  if (!solids) return {};
+  ClipPlan plan(surface, cells, kinds, grid, options.reuse);
+  clip_all(plan.tasks, *solids, surface, grid, run);
+  if (run.should_stop()) {
+    sink.report({.code = run.out_of_time() ? Code::limit_time : Code::cancelled});
+    return {};
+  }
+  std::vector<std::uint32_t> kind_of_task;
+  ClippedLattice out;
+  out.distinct = plan.tasks.size();
+  for (ClipTask& task : plan.tasks) {
+    if (!task.result.fault.empty()) return fault(task.result.fault);
+    if (task.result.left == ClippedCell::Left::all) {
+      kind_of_task.push_back(task.kind);
+      continue;
+    }
+    kind_of_task.push_back(static_cast<std::uint32_t>(solids->size()));
+    solids->push_back(task.result.solid);
+  }
+  for (std::uint32_t n = 0; n < cells.count(); ++n) {
+    const std::uint32_t task = plan.task_of(n);
+    if (task != KeptCells::none) kinds.set(n, kind_of_task[task]);
+    const TopoDS_Shape& solid = (*solids)[kinds.of(cells.cell(n), cells)];
+    out.kept += !solid.IsNull();
+    out.crossing += task != KeptCells::none && plan.tasks[task].result.left == ClippedCell::Left::part;
+  }
+  if (out.kept == 0) return out;
+  auto quotient = build_quotient(cell, *solids, {.mesh = options.mesh}, 10 * cell.tolerance(), sink);
+  if (!quotient) return {};
+  auto made = assemble(std::move(*quotient), std::move(cells), std::move(kinds), sink);
+  if (!made) return {};
+  out.body = std::move(*made);
+  return out;
+}
+
+}  // namespace meso::brep

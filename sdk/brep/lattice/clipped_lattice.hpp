@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// lattice_body for a body whose boundary runs through the cells. Private.
+//
+// Cells that see the same piece of the body are clipped once, in parallel; the results are further kinds of box, and
+// everything after that is as for whole boxes.
+
+#include "lattice/shape_lattice.hpp"
+#include "meso/base/run_options.hpp"
+
+namespace meso::brep {
+
+struct ClippedLattice {
+  Body body;
+  std::uint64_t kept = 0;      ///< cells of which something is left
+  std::uint64_t crossing = 0;  ///< of these, cut by the boundary
+  std::size_t distinct = 0;    ///< booleans they took
+};
+
+struct ClipOptions {
+  std::optional<MeshFineness> mesh{};
+  bool reuse = true;  ///< one boolean for all cells that see the same piece of the body
+};
+
+/// Body n regularised union of the cells (0, 0, 0) ... `last`. `body`: outward solids in the frame of the cell whose
+/// interiors do not meet. Empty, with a diagnostic, if something fails or the run is to stop.
+[[nodiscard]] std::optional<ClippedLattice> clipped_lattice_body(const CellShape& cell, const Index3& last,
+                                                                 const std::vector<TopoDS_Shape>& body,
+                                                                 const ClipOptions& options, const RunOptions& run,
+                                                                 DiagnosticSink& sink);
+
+}  // namespace meso::brep

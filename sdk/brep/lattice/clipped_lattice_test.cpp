@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: Apache-2.0
+// Lattices cut by bodies of every kind, against closed forms and against counting points with the exact distances.
+#include "lattice/clipped_lattice.hpp"
+
+#include <gtest/gtest.h>
+
+#include <numbers>
+#include <random>
+
+#include "lattice/primitive_field.hpp"
+#include "meso/brep/audit.hpp"
+#include "meso/brep/measure.hpp"
+
+namespace meso::brep {
+namespace {
+
+constexpr double pi = std::numbers::pi;
+constexpr double bcc_cell = 22.928246067499;  // a = 5, r = 0.5, R = 0.9, by inclusion and exclusion
+
+LatticeCell bcc() {
+  LatticeCell cell{.box = {{0, 0, 0}, {5, 5, 5}}, .primitives = {Ball{{2.5, 2.5, 2.5}, 0.9}}};
+  for (int i = 0; i < 8; ++i) {
+    const Vec3 corner{i & 1 ? 5.0 : 0, i & 2 ? 5.0 : 0, i & 4 ? 5.0 : 0};
+    cell.primitives.push_back(Ball{corner, 0.9});
+    cell.primitives.push_back(Frustum{corner, {2.5, 2.5, 2.5}, 0.5, 0.5});
+  }
+  return cell;
+}
+
+TopoDS_Shape box(Vec3 from, Vec3 to) { return BRepPrimAPI_MakeBox(to_pnt(from), to_pnt(to)).Solid(); }
+
+TopoDS_Shape solid_in(const TopoDS_Shape& shape) { return TopExp_Explorer(shape, TopAbs_SOLID).Current(); }
+
+struct Made {
+  std::optional<ClippedLattice> lattice;
+  Audit audit;
+  double volume = 0;
+};
+
+/// Cells (0, 0, 0) ... `last` of the body-centred lattice in the body.
+Made clipped(const std::vector<TopoDS_Shape>& body, const Index3& last, bool reuse = true, unsigned jobs = 0,
+             std::optional<MeshFineness> mesh = {}) {
+  DiagnosticSink sink;
+  const auto cell = cell_shape(bcc(), sink);
+  Made made;
+  made.lattice = clipped_lattice_body(*cell, last, body, {.mesh = mesh, .reuse = reuse}, {.jobs = jobs}, sink);
+  for (const Diagnostic& d : sink.diagnostics()) ADD_FAILURE() << render(d);
+  if (!made.lattice) return made;
+  made.audit = audit(made.lattice->body);
+  made.volume = measure(made.lattice->body).volume;
+  return made;
+}
+
+/// Volume of the infinite lattice in a body, by points; and the standard error of that.
+template <typename Inside>
+std::pair<double, double> counted(const Box3& around, Inside inside) {
+  const LatticeCell cell = bcc();
+  std::mt19937_64 random(7);
+  std::uniform_real_distribution<double> uniform;
+  constexpr int count = 400'000;
+  const Vec3 size = around.max - around.min;
+  int hits = 0;
+  for (int n = 0; n < count; ++n) {
+    Vec3 p;
+    for (std::size_t i = 0; i < 3; ++i) p[i] = around.min[i] + uniform(random) * size[i];
+    if (!inside(p)) continue;
+    for (std::size_t i = 0; i < 3; ++i) p[i] -= 5 * std::floor(p[i] / 5);
+    hits += signed_distance(cell.primitives, p) < 0;
+  }
+  const double share = static_cast<double>(hits) / count, all = size.x * size.y * size.z;
+  return {share * all, std::sqrt(share * (1 - share) / count) * all};
+}
+
+void expect_clean(const Made& made) {
+  ASSERT_TRUE(made.lattice);
+  EXPECT_EQ(made.audit.free_edges, 0u);
+  EXPECT_EQ(made.audit.multiple_edges, 0u);
+  EXPECT_EQ(made.audit.conflicts, 0u);
+  EXPECT_EQ(made.audit.open_loops, 0u);
+  EXPECT_TRUE(made.audit.clean());
+}
+
+TEST(ClippedLattice, ABoxOfWholePeriodsHoldsAsMuchWhereverItStands) {
+  for (const Vec3 at : {Vec3{3.7, 3.3, 2.9}, Vec3{2.5, 5, 5}, Vec3{5.005, 5.005, 5.005}, Vec3{4.2, 5, 2.5}}) {
+    const Made made = clipped({box(at, at + Vec3{10, 15, 10})}, {3, 4, 3});
+    expect_clean(made);
+    EXPECT_NEAR(made.volume / (12 * bcc_cell), 1, 1e-6);
+    EXPECT_GT(made.lattice->crossing, 0u);
+  }
+}
+
+TEST(ClippedLattice, WhatTheOutermostCellsSendOverTheirBoxesIsThere) {
+  // One cell, 5 mm from the body's boundary: the whole of its balls and struts.
+  const Made made = clipped({box({-4, -4, -4}, {9, 9, 9})}, {0, 0, 0});
+  expect_clean(made);
+  // Seven eighths of each corner ball are beyond the box.
+  EXPECT_NEAR(made.volume, bcc_cell + 7 * 4.0 / 3 * pi * 0.9 * 0.9 * 0.9, 1e-4);
+  EXPECT_EQ(made.lattice->body.fragments, 0u);
+}
+
+TEST(ClippedLattice, ReuseChangesNothingButTheTime) {
+  const std::vector<TopoDS_Shape> body{box({1.3, 1.7, 2.1}, {17, 14, 19})};
+  const Made once = clipped(body, {4, 4, 4}), each = clipped(body, {4, 4, 4}, false);
+  expect_clean(once);
+  expect_clean(each);
+  EXPECT_LT(once.lattice->distinct, 30u);
+  EXPECT_GT(each.lattice->distinct, once.lattice->distinct);
+  EXPECT_NEAR(once.volume, each.volume, 1e-9 * each.volume);
+  EXPECT_EQ(once.audit.faces, each.audit.faces);
+}
+
+TEST(ClippedLattice, ConcaveBodies) {
+  // An L whose inner walls lie on box planes in z only.
+  const TopoDS_Shape whole = box({1, 1, 0}, {13, 13, 10}), notch = box({6, 7, -1}, {20, 20, 11});
+  const TopoDS_Shape corner = BRepAlgoAPI_Cut(whole, notch).Shape();
+  const Made made = clipped({solid_in(corner)}, {3, 3, 2});
+  expect_clean(made);
+  const auto [volume, error] = counted({{1, 1, 0}, {13, 13, 10}}, [](Vec3 p) { return p.x < 6 || p.y < 7; });
+  EXPECT_NEAR(made.volume, volume, 4 * error);
+}
+
+TEST(ClippedLattice, CylinderAndSphere) {
+  const TopoDS_Shape rod = BRepPrimAPI_MakeCylinder(gp_Ax2({8.1, 7.7, 1.2}, gp::DZ()), 6.3, 21).Solid();
+  const Made in_rod = clipped({rod}, {3, 3, 5});
+  expect_clean(in_rod);
+  const auto [rod_volume, rod_error] =
+      counted({{1, 1, 1.2}, {15, 15, 22.2}}, [](Vec3 p) { return std::hypot(p.x - 8.1, p.y - 7.7) < 6.3; });
+  EXPECT_NEAR(in_rod.volume, rod_volume, 4 * rod_error);
+  EXPECT_LT(in_rod.lattice->distinct, in_rod.lattice->crossing);  // layers look alike
+
+  const TopoDS_Shape globe = BRepPrimAPI_MakeSphere(gp_Pnt(7.9, 7.2, 8.4), 6.9).Solid();
+  const Made in_globe = clipped({globe}, {3, 3, 3});
+  expect_clean(in_globe);
+  const auto [volume, error] = counted({{1, 0, 1}, {15, 15, 16}}, [](Vec3 p) {
+    return norm(p - Vec3{7.9, 7.2, 8.4}) < 6.9;
+  });
+  EXPECT_NEAR(in_globe.volume, volume, 4 * error);
+}
+
+TEST(ClippedLattice, ThreadsDoNotShowInTheResult) {
+  const std::vector<TopoDS_Shape> body{box({1.3, 1.7, 2.1}, {12, 14, 13})};
+  const Made one = clipped(body, {3, 3, 3}, true, 1), three = clipped(body, {3, 3, 3}, true, 3);
+  ASSERT_TRUE(one.lattice && three.lattice);
+  const Template &a = *one.lattice->body.solids.at(0).outer.geometry,
+                 &b = *three.lattice->body.solids.at(0).outer.geometry;
+  EXPECT_EQ(a.vertices, b.vertices);
+  ASSERT_EQ(a.faces.size(), b.faces.size());
+  for (std::size_t f = 0; f < a.faces.size(); ++f)
+    EXPECT_EQ(a.faces[f].moments.volume_moment, b.faces[f].moments.volume_moment);
+}
+
+TEST(ClippedLattice, StopsWhenAsked) {
+  DiagnosticSink sink;
+  const auto cell = cell_shape(bcc(), sink);
+  int polls = 0;
+  const RunOptions run{.jobs = 1, .cancelled = [&] { return ++polls > 20; }};
+  EXPECT_FALSE(clipped_lattice_body(*cell, {3, 3, 3}, {box({1.3, 1.7, 2.1}, {12, 14, 13})}, {}, run, sink));
+  ASSERT_FALSE(sink.diagnostics().empty());
+  EXPECT_EQ(sink.diagnostics().back().code, Code::cancelled);
+}
+
+}  // namespace
+}  // namespace meso::brep
