@@ -11,8 +11,10 @@
 #include <cassert>
 
 #include "face_pass.hpp"
+#include "meso/base/memory_mesh_sink.hpp"
 #include "ordered_output.hpp"
 #include "pulse.hpp"
+#include "sliver_collapse.hpp"
 #include "vertex_pass.hpp"
 
 namespace meso::implicit {
@@ -189,13 +191,42 @@ bool check_nodes(const Grid& grid, DiagnosticSink& diagnostics) {
   return true;
 }
 
+// A mesh that is worked on before it goes out.
+class WorkingMesh final : public MemoryMeshSink {
+ public:
+  using MemoryMeshSink::MemoryMeshSink;
+  // Growing vectors hold everything one and a half times; collapsing adds lists of corners and of short edges.
+  [[nodiscard]] std::uint64_t bytes_per_point() const override { return sizeof(Vec3) * 3 / 2 + 20; }
+  [[nodiscard]] std::uint64_t bytes_per_triangle() const override { return sizeof(IndexTriangle) * 3 / 2 + 32; }
+};
+
+std::optional<ContourReport> contour_without_slivers(const GridSource& source, MeshSink& sink,
+                                                     const ContourOptions& options, const RunOptions& run,
+                                                     DiagnosticSink& diagnostics) {
+  TriangleMesh mesh;
+  WorkingMesh working(mesh);
+  auto report = Contouring(source, working, options, run, diagnostics).run();
+  if (!report) return report;
+  const Grid& grid = source.grid();
+  run.report("slivers", 0);
+  if (!collapse_slivers(mesh, grid.box, std::min({grid.spacing(0), grid.spacing(1), grid.spacing(2)}), run)) {
+    diagnostics.report({.code = run.out_of_time() ? Code::limit_time : Code::cancelled});
+    return std::nullopt;
+  }
+  report->points = mesh.points.size();
+  report->triangles = mesh.triangles.size();
+  if (!write_mesh(mesh, sink)) return std::nullopt;
+  return report;
+}
+
 }  // namespace
 
 std::optional<ContourReport> contour(const GridSource& source, MeshSink& sink, const ContourOptions& options,
                                      const RunOptions& run, DiagnosticSink& diagnostics) {
   if (!check_nodes(source.grid(), diagnostics)) return std::nullopt;
   const auto start = std::chrono::steady_clock::now();
-  auto report = Contouring(source, sink, options, run, diagnostics).run();
+  auto report = options.collapse_slivers ? contour_without_slivers(source, sink, options, run, diagnostics)
+                                         : Contouring(source, sink, options, run, diagnostics).run();
   if (report) report->seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return report;
 }

@@ -207,6 +207,39 @@ TEST(Contour, PolishFindsTheBorderOfTheDefined) {
   EXPECT_NEAR(expect_sound(mesh, grid).box.max.x, 0.123, 1e-6 * grid.spacing(0));
 }
 
+double sliver_share(const TriangleMesh& mesh, double spacing) {
+  std::size_t slivers = 0;
+  for (const auto& t : mesh.triangles) {
+    const Vec3 a = mesh.points[t[0]], b = mesh.points[t[1]], c = mesh.points[t[2]];
+    const double longest = std::max({norm(b - a), norm(c - b), norm(a - c)});
+    slivers += norm(cross(b - a, c - a)) / longest < 0.05 * spacing ? 1 : 0;
+  }
+  return static_cast<double>(slivers) / static_cast<double>(mesh.triangles.size());
+}
+
+TEST(Contour, CollapsesSliversWithoutLosingAccuracy) {
+  const auto cut_ball = [](Vec3 p) { return std::max(norm(p) - 1, p.x - 0.4); };  // with a sharp edge
+  for (const auto& [f, half] : {std::pair{Function(gyroid), 1.0},
+                                {Function(ball), 1.25},
+                                {Function(ball), 0.8},
+                                {Function(cut_ball), 1.25},
+                                {Function(noise), 1.0}}) {
+    const Grid grid = cube(50, half);
+    const Result plain = contour_of(FunctionSource(grid, f));
+    const Result collapsed = contour_of(FunctionSource(grid, f), {.collapse_slivers = true});
+    const MeshAudit before = expect_sound(plain.mesh, grid), after = expect_sound(collapsed.mesh, grid);
+    EXPECT_EQ(after.components, before.components);
+    EXPECT_EQ(collapsed.report.euler, plain.report.euler);
+    EXPECT_EQ(collapsed.report.euler,
+              static_cast<std::int64_t>(after.points) - static_cast<std::int64_t>(after.triangles / 2));
+    EXPECT_NEAR(after.volume, before.volume, 1e-3 * before.volume);
+    EXPECT_EQ(after.box, before.box);
+    if (before.triangles > 200000) continue;  // noise has no shape to keep
+    EXPECT_LT(sliver_share(collapsed.mesh, grid.spacing(0)), 0.2 * sliver_share(plain.mesh, grid.spacing(0)));
+    EXPECT_LT(after.triangles, 0.9 * static_cast<double>(before.triangles));
+  }
+}
+
 TEST(Contour, CountsHandles) {
   const auto torus = [](Vec3 p) { return std::hypot(std::hypot(p.x, p.y) - 0.6, p.z) - 0.25; };
   EXPECT_EQ(contour_of(FunctionSource(cube(40), torus)).report.euler, 0);

@@ -10,7 +10,7 @@
 
 namespace meso {
 
-class MemoryMeshSink final : public MeshSink {
+class MemoryMeshSink : public MeshSink {
  public:
   explicit MemoryMeshSink(TriangleMesh& mesh) : mesh_(mesh) {}
 
