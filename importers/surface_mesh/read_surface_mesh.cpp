@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "meso/import_surface_mesh/read_surface_mesh.hpp"
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <memory>
+
+#include "meso/import_surface_mesh/read_stl.hpp"
+#include "readers.hpp"
+#include "text_scanner.hpp"
+
+namespace meso {
+namespace {
+
+using Reader = std::optional<TriangleMesh> (*)(std::string_view, const std::string&, DiagnosticSink&);
+
+Reader reader_of_extension(const std::string& file) {
+  std::string extension = std::filesystem::path(file).extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + ('a' - 'A')) : c; });
+  if (extension == ".stl") return read_stl;
+  if (extension == ".ply") return read_ply;
+  if (extension == ".obj") return read_obj;
+  if (extension == ".off") return read_off;
+  return nullptr;
+}
+
+/// "ply" and "OFF" begin nothing else; "solid" begins STL, if not an OBJ of that name.
+Reader reader_of(std::string_view bytes, const std::string& file) {
+  if (bytes.starts_with("ply\n") || bytes.starts_with("ply\r")) return read_ply;
+  const std::string_view first = TextScanner(bytes.substr(0, 4096), "", '#').word();
+  constexpr std::size_t longest = 8;  // STCN4nOFF without one
+  if (first.ends_with("OFF") && first.size() <= longest) return read_off;
+  if (const Reader named = reader_of_extension(file)) return named;
+  if (first == "solid") return read_stl;
+  if (first == "v" || first == "o" || first == "mtllib") return read_obj;
+  constexpr std::size_t header_bytes = 84, facet_bytes = 50;
+  std::uint32_t facets = 0;
+  if (bytes.size() >= header_bytes) std::memcpy(&facets, bytes.data() + 80, sizeof facets);
+  if (facets > 0 && bytes.size() == header_bytes + std::uint64_t{facets} * facet_bytes) return read_stl;
+  return nullptr;
+}
+
+std::optional<std::string> contents(const std::filesystem::path& file, DiagnosticSink& sink) {
+  const auto fail = [&]() -> std::nullopt_t {
+    sink.report({.code = Code::file_not_found, .args = {file.string(), std::strerror(errno)}});
+    return std::nullopt;
+  };
+  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> stream(std::fopen(file.c_str(), "rb"), std::fclose);
+  if (!stream) return fail();
+  std::string bytes;
+  std::size_t size = 0;
+  do {
+    constexpr std::size_t block = 1 << 20;
+    bytes.resize(std::max(2 * size, block));
+    errno = 0;
+    size += std::fread(bytes.data() + size, 1, bytes.size() - size, stream.get());
+  } while (size == bytes.size());
+  if (std::ferror(stream.get()) != 0) return fail();
+  bytes.resize(size);
+  return bytes;
+}
+
+}  // namespace
+
+std::optional<TriangleMesh> read_surface_mesh(std::string_view bytes, const std::string& file, DiagnosticSink& sink) {
+  const Reader reader = reader_of(bytes, file);
+  if (reader == nullptr) {
+    sink.report({.code = Code::mesh_file_format, .where = {.file = file}, .args = {file}});
+    return {};
+  }
+  std::optional<TriangleMesh> mesh = reader(bytes, file, sink);
+  if (mesh && mesh->triangles.empty()) {
+    sink.report({.code = Code::mesh_file_empty, .where = {.file = file}});
+    mesh.reset();
+  }
+  return mesh;
+}
+
+std::optional<TriangleMesh> read_surface_mesh_file(const std::filesystem::path& file, DiagnosticSink& sink) {
+  const std::optional<std::string> bytes = contents(file, sink);
+  if (!bytes) return {};
+  return read_surface_mesh(*bytes, file.string(), sink);
+}
+
+}  // namespace meso
