@@ -61,6 +61,13 @@ TEST(Elementary, ErrorsAreSmall) {
                 Op::cos, angles, [](long double v) { return std::cos(v); }, 1e-10),
             2.5);
   EXPECT_LT(worst_error(Op::exp, arguments({1e-8, 1, 20, 700}), [](long double v) { return std::exp(v); }), 1.5);
+  EXPECT_LT(worst_error(
+                Op::tan, angles, [](long double v) { return std::tan(v); }, 1e-10),
+            3);
+  const auto fractions = arguments({1e-8, 0.1, 0.5, 1}), any = arguments({0.1, 1, 3, 100, 1e10});
+  EXPECT_LT(worst_error(Op::asin, fractions, [](long double v) { return std::asin(v); }), 3);
+  EXPECT_LT(worst_error(Op::acos, fractions, [](long double v) { return std::acos(v); }), 3);
+  EXPECT_LT(worst_error(Op::atan, any, [](long double v) { return std::atan(v); }), 1.5);
   auto positive = arguments({1, 2, 1e3, 1e300});
   for (Vec3& p : positive) p.x = std::abs(p.x);
   for (int k = -1073; k < 1024; ++k) positive.push_back({std::ldexp(1.0, k), 0, 0});
@@ -127,10 +134,6 @@ TEST(Elementary, SpecialValues) {
       case Op::abs:
       case Op::sign:
       case Op::sqrt:
-      case Op::tan:
-      case Op::asin:
-      case Op::acos:
-      case Op::atan:
       case Op::hash:
         check(Term::apply(o, {x}), 0);
         break;
@@ -138,10 +141,17 @@ TEST(Elementary, SpecialValues) {
       case Op::log:
       case Op::sin:
       case Op::cos:
-        check(Term::apply(o, {x}), 2);
+      case Op::tan:
+      case Op::asin:
+      case Op::acos:
+      case Op::atan:
+        check(Term::apply(o, {x}), 3);
         break;
+      case Op::atan2:
       case Op::hypot:
-        check(Term::apply(o, {x, y}), 2);
+        check(Term::apply(o, {x, z}), 3);
+        check(Term::apply(o, {z, x}), 3);
+        check(Term::apply(o, {x, y}), 3);
         break;
       case Op::clamp:
       case Op::select:

@@ -11,11 +11,6 @@ namespace {
 using expr::Op;
 
 template <Op op>
-void one(const Input* in, std::size_t, double* out, std::size_t n) {
-  for (std::size_t i = 0; i < n; ++i) out[i] = expr::apply<op>(in[0].values[in[0].uniform ? 0 : i]);
-}
-
-template <Op op>
 void two(const Input* in, std::size_t, double* out, std::size_t n) {
   for (std::size_t i = 0; i < n; ++i)
     out[i] = expr::apply<op>(in[0].values[in[0].uniform ? 0 : i], in[1].values[in[1].uniform ? 0 : i]);
@@ -33,11 +28,6 @@ void hash(const Input* in, std::size_t count, double* out, std::size_t n) {
 
 void fill_lane_kernels(RowKernels& kernels) {
   const auto set = [&](Op op, Kernel kernel) { kernels.of_op[static_cast<std::size_t>(op)] = kernel; };
-  set(Op::tan, one<Op::tan>);
-  set(Op::asin, one<Op::asin>);
-  set(Op::acos, one<Op::acos>);
-  set(Op::atan, one<Op::atan>);
-  set(Op::atan2, two<Op::atan2>);
   set(Op::power, two<Op::power>);
   set(Op::hash, hash);
 }

@@ -101,6 +101,68 @@ inline Lanes cosine(Lanes x) {  // cos(r + (n + 1/2) pi) = -(-1)^n sin r
   return patched(result, ~(absolute(x) <= trigonometric_range), x, x, [](double v, double) { return ::cos(v); });
 }
 
+/// cos r for |r| <= pi/4, as the sine.
+inline Lanes cosine_series(Lanes r) {
+  const Lanes s = r * r;
+  Lanes p = splat(1 / 20922789888000.);
+  p = p * s - 1 / 87178291200.;
+  p = p * s + 1 / 479001600.;
+  p = p * s - 1 / 3628800.;
+  p = p * s + 1 / 40320.;
+  p = p * s - 1 / 720.;
+  p = p * s + 1 / 24.;
+  return 1 - (0.5 * s - s * s * p);
+}
+
+inline Lanes tangent(Lanes x) {
+  const Lanes shifted = x * 0x1.45f306dc9c883p-1 + round_shift;  // 2 / pi
+  const Lanes r = less_multiple_of_pi(x, (shifted - round_shift) * 0.5);
+  const Lanes s = sine_series(r), c = cosine_series(r);
+  const Bits odd = ((Bits)shifted & 1) != 0;
+  const Lanes result = (odd ? -c : s) / (odd ? s : c);
+  return patched(result, ~(absolute(x) <= trigonometric_range), x, x, [](double v, double) { return ::tan(v); });
+}
+
+/// The angle in [0, pi/2] with tangent y / x, y and x >= 0: one of three eighths of a turn, and the rest t by a
+/// polynomial with |t| <= tan(pi/8) (Chebyshev nodes; off by less than 6e-18 t).
+inline Lanes first_quadrant_angle(Lanes y, Lanes x) {
+  const Bits low = y <= 0x1.a827999fcef32p-2 * x;  // tan(pi/8)
+  const Bits high = y > 0x1.3504f333f9de6p+1 * x;  // tan(3 pi/8)
+  const Lanes t = (low ? y : high ? -x : y - x) / (low ? x : high ? y : y + x);
+  const Lanes q = t * t;
+  Lanes p = splat(-0x1.3a31b1c0fd3b7p-6);
+  p = p * q + 0x1.4162c02b1dda3p-5;
+  p = p * q - 0x1.a0999c632b6edp-5;
+  p = p * q + 0x1.dfe6497e96323p-5;
+  p = p * q - 0x1.10fa77b1a6d57p-4;
+  p = p * q + 0x1.3b1263064f6b9p-4;
+  p = p * q - 0x1.745d0b28a7e37p-4;
+  p = p * q + 0x1.c71c71853d7fap-4;
+  p = p * q - 0x1.2492492436201p-3;
+  p = p * q + 0x1.999999999934cp-3;
+  p = p * q - 0x1.5555555555555p-2;
+  const Lanes rest = t * (q * p);
+  const Lanes turn = low ? Lanes{} : high ? splat(0x1.921fb54442d18p+0) : splat(0x1.921fb54442d18p-1);
+  return turn + (t + (rest + turn * 0x1.678afae35cdd1p-55));  // what turn lacks
+}
+
+inline Lanes arc_tangent(Lanes x) {
+  return patched(with_sign_of(first_quadrant_angle(absolute(x), splat(1)), x), ~(absolute(x) <= 1e300), x, x,
+                 [](double v, double) { return ::atan(v); });
+}
+
+/// zeros count as positive.
+inline Lanes arc_tangent2(Lanes y, Lanes x) {
+  const Lanes a = absolute(y), b = absolute(x), larger = a > b ? a : b;
+  const Lanes angle = first_quadrant_angle(a, b);
+  const Lanes result = with_sign_of(x < 0 ? 0x1.921fb54442d18p+1 - (angle - 0x1.1a62633145c07p-53) : angle, y + 0.0);
+  return patched(result, ~((larger <= 1e300) & (larger >= 1e-300) & (a >= 0) & (b >= 0)), y + 0.0, x + 0.0,
+                 [](double v, double u) { return ::atan2(v, u); });
+}
+
+inline Lanes arc_sine(Lanes x) { return arc_tangent2(x, square_root((1 - x) * (1 + x))); }
+inline Lanes arc_cosine(Lanes x) { return arc_tangent2(square_root((1 - x) * (1 + x)), x); }
+
 /// 2^k for whole k in [-1022, 1023].
 inline Lanes power_of_two(Lanes k) { return (Lanes)(((Bits)(k + (round_shift + 1023))) << 52); }
 
