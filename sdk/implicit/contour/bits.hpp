@@ -5,6 +5,7 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 
 namespace meso::implicit {
 
@@ -24,6 +25,15 @@ inline std::uint16_t* append_bits(std::uint64_t bits, std::size_t w, std::uint16
 inline std::uint64_t moved_up(const std::uint64_t* row, std::size_t w) {
   const std::uint64_t* const word = row + w;
   return word[0] << 1 | word[-1] >> 63;
+}
+
+/// Bits b - 1 and b of a row. row[-1] may be read.
+inline unsigned two_signs(const std::uint64_t* row, std::size_t b) {
+  static_assert(std::endian::native == std::endian::little, "rows of bits are read byte by byte");
+  const std::size_t bit = b + 63;
+  std::uint32_t bits = 0;
+  std::memcpy(&bits, reinterpret_cast<const char*>(row - 1) + bit / 8, sizeof bits);
+  return bits >> bit % 8 & 3U;
 }
 
 }  // namespace meso::implicit

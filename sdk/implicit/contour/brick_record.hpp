@@ -71,7 +71,12 @@ inline RowCounts read_row(const std::uint16_t*& from, std::uint64_t* inside, std
   std::uint64_t carry = 0;
   for (std::size_t w = 0; w < words; ++w) {
     std::uint64_t parity = inside[w];
-    for (int shift = 1; shift < 64; shift *= 2) parity ^= parity << shift;
+    parity ^= parity << 1;
+    parity ^= parity << 2;
+    parity ^= parity << 4;
+    parity ^= parity << 8;
+    parity ^= parity << 16;
+    parity ^= parity << 32;
     inside[w] = parity ^ carry;
     carry ^= std::uint64_t{0} - (parity >> 63);
   }

@@ -9,18 +9,8 @@
 namespace meso::implicit {
 namespace {
 
-static_assert(std::endian::native == std::endian::little, "rows of bits are read byte by byte");
-
 constexpr std::size_t chunk = 1024;
 constexpr std::size_t most_triangles = 12;  // of one cell
-
-// Signs of the nodes b - 1 and b.
-unsigned two_signs(const std::uint64_t* row, std::size_t b) {
-  const std::size_t bit = b + 63;
-  std::uint32_t bits = 0;
-  std::memcpy(&bits, reinterpret_cast<const char*>(row - 1) + bit / 8, sizeof bits);
-  return bits >> bit % 8 & 3U;
-}
 
 bool crossed(unsigned inside, unsigned edge) {
   return ((inside >> edge_corners[edge][0] ^ inside >> edge_corners[edge][1]) & 1U) != 0;
@@ -43,7 +33,11 @@ FacePass::FacePass(const Layout& layout, const MeshSink& sink)
   // edge, and the near edge was counted last: both move on when the far edge is crossed.
   constexpr std::array<std::uint8_t, 12> decides{0, 1, 2, 3, 5, 5, 7, 7, 9, 9, 11, 11};
   for (unsigned inside = 0; inside < 256; ++inside)
-    for (unsigned e = 0; e < 12; ++e) advance_[inside].by[e] = crossed(inside, decides[e]) ? 1 : 0;
+    for (unsigned e = 0; e < 4; ++e) {
+      advance_[inside].x[e] = crossed(inside, decides[e]) ? 1 : 0;
+      advance_[inside].y[e] = crossed(inside, decides[e + 4]) ? 1 : 0;
+      advance_[inside].z[e] = crossed(inside, decides[e + 8]) ? 1 : 0;
+    }
 }
 
 std::uint64_t FacePass::run(const BrickView& brick, ByteBuffer& out, const std::function<bool()>& after_row) {
@@ -100,18 +94,18 @@ void FacePass::find_active_cells() {
   active_ = static_cast<std::size_t>(to - cells_.data());
 }
 
-unsigned FacePass::corners_inside(std::size_t cell) const {
-  return two_signs(a_, cell) | two_signs(b_, cell) << 2 | two_signs(c_, cell) << 4 | two_signs(d_, cell) << 6;
-}
-
 void FacePass::plain_row(std::size_t j) {
   const RowNumbers &a = below_->numbers(j - 1), &b = below_->numbers(j), &c = above_->numbers(j - 1),
                    &d = above_->numbers(j);
-  std::array<std::uint32_t, 12> ids{a.x, b.x, c.x, d.x, b.y - 1, b.y, d.y - 1, d.y, c.z - 1, c.z, d.z - 1, d.z};
+  Four x{a.x, b.x, c.x, d.x}, y{b.y - 1, b.y, d.y - 1, d.y}, z{c.z - 1, c.z, d.z - 1, d.z};
+  alignas(Four) std::array<std::uint32_t, 12> ids;
   IndexTriangle* to = triangles_.data() + filled_;
   for (std::size_t n = 0; n < active_; ++n) {
     const std::size_t cell = cells_[n];
     const unsigned inside = corners_inside(cell);
+    std::memcpy(&ids[0], &x, sizeof x);
+    std::memcpy(&ids[4], &y, sizeof y);
+    std::memcpy(&ids[8], &z, sizeof z);
     const PlainCell& plain = table_.plain(inside);
     const auto put = [&](std::size_t t) {
       const auto& edges = plain.triangles[t];
@@ -121,7 +115,9 @@ void FacePass::plain_row(std::size_t j) {
     if (plain.count > 4) put(4);
     to += plain.count;
     const Advance& advance = advance_[inside];
-    for (std::size_t e = 0; e < 12; ++e) ids[e] += advance.by[e];
+    x += advance.x;
+    y += advance.y;
+    z += advance.z;
   }
   filled_ = static_cast<std::size_t>(to - triangles_.data());
 }

@@ -5,6 +5,7 @@
 #include <functional>
 #include <vector>
 
+#include "bits.hpp"
 #include "brick_record.hpp"
 #include "case_table.hpp"
 #include "meso/base/mesh_sink.hpp"
@@ -30,7 +31,9 @@ class FacePass {
 
  private:
   void find_active_cells();
-  [[nodiscard]] unsigned corners_inside(std::size_t cell) const;
+  [[nodiscard]] unsigned corners_inside(std::size_t cell) const {
+    return two_signs(a_, cell) | two_signs(b_, cell) << 2 | two_signs(c_, cell) << 4 | two_signs(d_, cell) << 6;
+  }
   void plain_row(std::size_t j);
   void special_row(std::size_t j, std::size_t k, std::span<const JoinedCell> joined);
   void number_y(SignPlane& plane, std::size_t j, std::vector<std::uint32_t>& to);
@@ -39,9 +42,11 @@ class FacePass {
                          std::vector<std::uint32_t>& to);
   void flush(ByteBuffer& out);
 
-  /// How far the numbers of the edges move on from one cell to the next.
+  /// One number for each edge along an axis.
+  using Four __attribute__((vector_size(16))) = std::uint32_t;
+  /// How far the numbers of the edges along x, y, z move on from one cell to the next.
   struct Advance {
-    std::array<std::uint32_t, 12> by;
+    Four x, y, z;
   };
 
   const Layout& layout_;

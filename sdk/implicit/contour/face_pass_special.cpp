@@ -78,7 +78,7 @@ void FacePass::special_row(std::size_t j, std::size_t k, std::span<const JoinedC
       if (triangle[0] != triangle[1] && triangle[1] != triangle[2] && triangle[2] != triangle[0])
         triangles_[filled_++] = triangle;
     }
-    for (std::size_t e = 0; e < 4; ++e) ids[e] += advance_[inside].by[e];
+    for (std::size_t e = 0; e < 4; ++e) ids[e] += advance_[inside].x[e];
     if (triangles.centre_edges != 0) ++ids[centre_vertex];
   }
 }

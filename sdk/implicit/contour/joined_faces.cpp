@@ -58,7 +58,7 @@ void JoinedFaces::find_across_x_and_y(const CellRows& rows, std::size_t w) {
   });
 }
 
-void JoinedFaces::collect(std::uint32_t j, std::uint32_t row, std::vector<JoinedCell>& cells) {
+void JoinedFaces::collect_found(std::uint32_t j, std::uint32_t row, std::vector<JoinedCell>& cells) {
   for (; next_below_ < plane_below_.size() && plane_below_[next_below_].row == j; ++next_below_)
     row_.push_back({plane_below_[next_below_].cell, 4});
   for (; next_ < plane_.size(); ++next_) row_.push_back({plane_[next_].cell, 5});

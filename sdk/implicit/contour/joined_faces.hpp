@@ -30,9 +30,15 @@ class JoinedFaces {
   void find_across_x_and_y(const CellRows& rows, std::size_t w);
 
   /// Appends this row's cells to `cells`, ascending.
-  void collect(std::uint32_t j, std::uint32_t row, std::vector<JoinedCell>& cells);
+  void collect(std::uint32_t j, std::uint32_t row, std::vector<JoinedCell>& cells) {
+    const bool none = row_.empty() && across_y_.empty() && across_y_before_.empty() && next_ == plane_.size() &&
+                      next_below_ == plane_below_.size();
+    if (!none) collect_found(j, row, cells);
+  }
 
  private:
+  void collect_found(std::uint32_t j, std::uint32_t row, std::vector<JoinedCell>& cells);
+
   struct Face {
     std::uint32_t row;
     std::uint16_t cell;

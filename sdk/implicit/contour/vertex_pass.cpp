@@ -110,6 +110,7 @@ void VertexPass::row(std::size_t j, std::size_t k, std::uint32_t cell_row, Brick
   const std::size_t old_cells = record.joined.size();
   joined_.collect(static_cast<std::uint32_t>(j), cell_row, record.joined);
   add_vertices(rows, j, k, record);
+  prefetch_next_row(j);
   RowCounts counts{static_cast<std::uint16_t>(nx_), static_cast<std::uint16_t>(ny_), static_cast<std::uint16_t>(nz_),
                    0};
   if (record.joined.size() > old_cells)
@@ -117,6 +118,13 @@ void VertexPass::row(std::size_t j, std::size_t k, std::uint32_t cell_row, Brick
   append_row(signs_, counts, x_.data(), rows.d.inside, layout_.words);
   record.vertices += counts.total();
   if (k < layout_.nz && j < layout_.ny) rows_.replace(j);
+}
+
+// A surface goes on: the next row crosses to the plane below near where this one does, and values of that plane are the
+// only ones that have left the nearest cache.
+void VertexPass::prefetch_next_row(std::size_t j) const {
+  const float* const below = rows_.at(static_cast<std::ptrdiff_t>(j) + 1).values;
+  for (std::size_t n = 0; n < nz_; ++n) __builtin_prefetch(below + z_[n]);
 }
 
 void VertexPass::find_crossings(const CellRows& rows, std::size_t j, std::size_t k) {

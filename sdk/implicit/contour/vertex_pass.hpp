@@ -28,6 +28,7 @@ class VertexPass {
  private:
   void sample_plane_below(std::size_t k);
   void row(std::size_t j, std::size_t k, std::uint32_t cell_row, BrickRecord& record);
+  void prefetch_next_row(std::size_t j) const;
   void find_crossings(const CellRows& rows, std::size_t j, std::size_t k);
   void add_vertices(const CellRows& rows, std::size_t j, std::size_t k, BrickRecord& record);
   template <class Visit>
