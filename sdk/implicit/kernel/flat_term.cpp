@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cassert>
 #include <unordered_map>
 
@@ -41,6 +42,7 @@ FlatTerm::FlatTerm(const Term& term) : term_(term) {
     std::size_t next_operand;
   };
   std::unordered_map<const TermNode*, std::uint32_t> index_of;
+  std::unordered_multimap<std::uint64_t, std::uint32_t> steps_of_hash;
   std::vector<Visit> path{{term.identity(), 0}};
   while (!path.empty()) {
     Visit& visit = path.back();
@@ -51,13 +53,46 @@ FlatTerm::FlatTerm(const Term& term) : term_(term) {
       continue;
     }
     path.pop_back();
-    if (!index_of.emplace(&node, static_cast<std::uint32_t>(steps_.size())).second) continue;
+    if (index_of.contains(&node)) continue;
+    const std::uint32_t candidate = static_cast<std::uint32_t>(steps_.size());
     steps_.push_back({.op = node.op,
                       .operands = static_cast<std::uint8_t>(node.operands.size()),
                       .first_operand = static_cast<std::uint32_t>(operands_.size()),
                       .node = &node});
     for (const Term& operand : node.operands) operands_.push_back(index_of.at(operand.identity()));
+    // The same operation of the same steps is the same step, whichever node says so.
+    const std::uint64_t hash = hash_of(steps_.back());
+    const auto [first, last] = steps_of_hash.equal_range(hash);
+    const auto twin =
+        std::find_if(first, last, [&](const auto& entry) { return equal(steps_[entry.second], steps_.back()); });
+    if (twin == last) {
+      steps_of_hash.emplace(hash, candidate);
+      index_of.emplace(&node, candidate);
+    } else {
+      index_of.emplace(&node, twin->second);
+      operands_.resize(steps_.back().first_operand);
+      steps_.pop_back();
+    }
   }
+}
+
+std::uint64_t FlatTerm::hash_of(const Step& step) const {
+  std::uint64_t h = static_cast<std::uint64_t>(step.op);
+  const auto mix = [&h](std::uint64_t v) {
+    h = (h ^ v) * 0x9E3779B97F4A7C15U;
+    h ^= h >> 32;
+  };
+  mix(std::bit_cast<std::uint64_t>(step.node->number));
+  mix(step.node->axis);
+  for (const std::uint32_t index : operands(step)) mix(index);
+  return h;
+}
+
+bool FlatTerm::equal(const Step& a, const Step& b) const {
+  return a.op == b.op && a.node->axis == b.node->axis && a.node->external == b.node->external &&
+         std::bit_cast<std::uint64_t>(a.node->number) == std::bit_cast<std::uint64_t>(b.node->number) &&
+         std::ranges::equal(operands(a), operands(b)) &&
+         (!a.node->external || a.node->field_from_world == b.node->field_from_world);
 }
 
 double FlatTerm::value(Vec3 p) const {

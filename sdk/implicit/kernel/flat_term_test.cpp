@@ -135,6 +135,12 @@ TEST(FlatTerm, ExternalLeavesMoveWithTheirMap) {
   EXPECT_NEAR(range.hi - range.lo, 2, 1e-9);
 }
 
+TEST(FlatTerm, EqualStepsAreOneStep) {
+  const FlatTerm f(parsed("sin(2*pi*x)*sin(2*pi*x) + sin(2*pi*x)"));
+  EXPECT_EQ(f.steps().size(), 6U);  // 2 pi, x, their product, the sine, its square, the sum
+  EXPECT_NEAR(f.interval({{-1, 0, 0}, {1, 1, 1}}).lo, -1, 1e-12);  // the square is not negative
+}
+
 TEST(FlatTerm, AnyDepthIsFine) {
   Term deep = x;
   for (int i = 0; i < 100000; ++i) deep = i % 2 == 0 ? min(deep, y) : deep + Term::constant(1);

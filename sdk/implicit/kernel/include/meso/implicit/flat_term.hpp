@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// A term written as a list of steps, operands before operations, each shared node once: what one walks without
-// recursion and evaluates with any kind of number - doubles, intervals, and both with their derivatives.
+// A term written as a list of steps, operands before operations, equal ones once: what one walks without recursion and
+// evaluates with any kind of number - doubles, intervals, and both with their derivatives.
 //
 //   const FlatTerm flat(term);
 //   flat.value({1, 0, 0});
@@ -32,7 +32,7 @@ class FlatTerm {
 
   explicit FlatTerm(const Term& term);
 
-  /// The last one is the term itself.
+  /// Distinct; the last one is the term itself.
   [[nodiscard]] std::span<const Step> steps() const { return steps_; }
   /// Indices of earlier steps.
   [[nodiscard]] std::span<const std::uint32_t> operands(const Step& step) const {
@@ -52,6 +52,9 @@ class FlatTerm {
   [[nodiscard]] double lipschitz(const Box3& box) const;
 
  private:
+  [[nodiscard]] std::uint64_t hash_of(const Step& step) const;
+  [[nodiscard]] bool equal(const Step& a, const Step& b) const;
+
   Term term_;  // keeps the nodes alive
   std::vector<Step> steps_;
   std::vector<std::uint32_t> operands_;
