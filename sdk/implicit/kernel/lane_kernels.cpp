@@ -8,14 +8,6 @@
 namespace meso::implicit {
 namespace {
 
-using expr::Op;
-
-template <Op op>
-void two(const Input* in, std::size_t, double* out, std::size_t n) {
-  for (std::size_t i = 0; i < n; ++i)
-    out[i] = expr::apply<op>(in[0].values[in[0].uniform ? 0 : i], in[1].values[in[1].uniform ? 0 : i]);
-}
-
 void hash(const Input* in, std::size_t count, double* out, std::size_t n) {
   std::array<double, 8> arguments{};
   for (std::size_t i = 0; i < n; ++i) {
@@ -26,10 +18,6 @@ void hash(const Input* in, std::size_t count, double* out, std::size_t n) {
 
 }  // namespace
 
-void fill_lane_kernels(RowKernels& kernels) {
-  const auto set = [&](Op op, Kernel kernel) { kernels.of_op[static_cast<std::size_t>(op)] = kernel; };
-  set(Op::power, two<Op::power>);
-  set(Op::hash, hash);
-}
+void fill_lane_kernels(RowKernels& kernels) { kernels.of_op[static_cast<std::size_t>(expr::Op::hash)] = hash; }
 
 }  // namespace meso::implicit

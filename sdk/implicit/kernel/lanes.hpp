@@ -185,17 +185,20 @@ inline Lanes exponential(Lanes x) {
   return patched(result, ~(absolute(x) <= 700), x, x, [](double v, double) { return ::exp(v); });
 }
 
-/// ln x = k ln 2 + ln(1 + f), 1 + f in [sqrt 1/2, sqrt 2]; with s = f / (2 + f) that logarithm is 2 artanh s, written
-/// as f - s (f - 2 s^2/3 - 2 s^4/5 - ...) because f is exact.
-inline Lanes logarithm(Lanes x) {
+/// x = mantissa 2^exponent, mantissa in [sqrt 1/2, sqrt 2]; for normal x > 0.
+struct Fraction {
+  Lanes mantissa, exponent;
+};
+inline Fraction fraction_of(Lanes x) {
   const Bits bits = (Bits)x;
   const Lanes mantissa = (Lanes)((bits & 0xfffffffffffff) | (Bits)splat(1));
   const Bits halve = mantissa > 0x1.6a09e667f3bcdp+0;
   const Lanes biased = (Lanes)((Bits)((Unsigned)bits >> 52) | (Bits)splat(0x1p52)) - 0x1p52;
-  const Lanes k = biased - 1023 + truth(halve);
-  const Lanes f = (halve ? mantissa * 0.5 : mantissa) - 1;
-  const Lanes s = f / (2 + f);
-  const Lanes q = s * s;
+  return {halve ? mantissa * 0.5 : mantissa, biased - 1023 + truth(halve)};
+}
+
+/// 2/3 + 2/5 q + 2/7 q^2 + ...: 2 artanh s = 2 s + s^3 times this, q = s^2.
+inline Lanes artanh_series(Lanes q) {
   Lanes p = splat(2 / 23.);
   p = p * q + 2 / 21.;
   p = p * q + 2 / 19.;
@@ -207,9 +210,62 @@ inline Lanes logarithm(Lanes x) {
   p = p * q + 2 / 7.;
   p = p * q + 2 / 5.;
   p = p * q + 2 / 3.;
-  const Lanes result = k * 0x1.62e42fefap-1 + ((f - s * (f - q * p)) + k * 0x1.cf79abc9e3b3ap-40);
+  return p;
+}
+
+/// ln x = k ln 2 + ln(1 + f); with s = f / (2 + f) that logarithm is 2 artanh s, written as f - s (f - 2 s^2/3 - ...)
+/// because f is exact.
+inline Lanes logarithm(Lanes x) {
+  const Fraction fraction = fraction_of(x);
+  const Lanes f = fraction.mantissa - 1;
+  const Lanes s = f / (2 + f);
+  const Lanes q = s * s;
+  const Lanes of_fraction = f - s * (f - q * artanh_series(q));
+  const Lanes result = fraction.exponent * 0x1.62e42fefap-1 + (of_fraction + fraction.exponent * 0x1.cf79abc9e3b3ap-40);
   return patched(result, ~((x >= 0x1p-1022) & (x <= 0x1.fffffffffffffp+1023)), x, x,
                  [](double v, double) { return ::log(v); });
+}
+
+/// A number as a sum of two doubles, the second what the first lacks.
+struct Double {
+  Lanes head, tail;
+};
+
+/// Dekker: a * b to the last bit. REQUIRES: magnitudes below 1e150.
+inline Double product(Lanes a, Lanes b) {
+  const Lanes p = a * b, a_shifted = a * 0x1.0000002p27, b_shifted = b * 0x1.0000002p27;
+  const Lanes a1 = a_shifted - (a_shifted - a), a2 = a - a1, b1 = b_shifted - (b_shifted - b), b2 = b - b1;
+  return {p, ((a1 * b1 - p) + a1 * b2 + a2 * b1) + a2 * b2};
+}
+
+/// Knuth: a + b to the last bit.
+inline Double sum(Lanes a, Lanes b) {
+  const Lanes s = a + b, of_b = s - a;
+  return {s, (a - (s - of_b)) + (b - of_b)};
+}
+
+/// As logarithm(), with 59 bits: s and what surrounds its series in two parts each. For normal x > 0.
+inline Double precise_logarithm(Lanes x) {
+  const Fraction fraction = fraction_of(x);
+  const Double divisor = sum(splat(1), fraction.mantissa);
+  const Lanes f = fraction.mantissa - 1, s = f / divisor.head;
+  const Double back = product(s, divisor.head);
+  const Lanes s_tail = (((f - back.head) - back.tail) - s * divisor.tail) / divisor.head;
+  const Lanes q = s * s;
+  const Lanes rest = s * (q * artanh_series(q)) + 2 * (s_tail + q * s_tail);
+  const Double high = sum(fraction.exponent * 0x1.62e42fefap-1, 2 * s);
+  return sum(high.head, high.tail + (rest + fraction.exponent * 0x1.cf79abc9e3b3ap-40));
+}
+
+/// exp(y ln x) where that is moderate; signs, zeros and what is far from 1 are left to the C library.
+inline Lanes power(Lanes x, Lanes y) {
+  const Bits positive = (x >= 0x1p-1022) & (x <= 0x1.fffffffffffffp+1023) & (absolute(y) <= 1e10);
+  const Double ln_x = precise_logarithm(positive ? x : splat(1));
+  const Double exponent = product(positive ? y : Lanes{}, ln_x.head);
+  const Bits within = positive & (absolute(exponent.head) <= 50);
+  const Lanes result = exponential(within ? exponent.head : Lanes{});
+  return patched(result + result * (exponent.tail + y * ln_x.tail), ~within, x, y,
+                 [](double v, double u) { return ::pow(v, u); });
 }
 
 inline Lanes hypotenuse(Lanes x, Lanes y) {

@@ -188,6 +188,7 @@ void fill(RowKernels& kernels) {
   MESO_TWO(equal, truth(x == y))
   MESO_TWO(not_equal, truth(x != y))
   MESO_TWO(mod, x - y * floored(x / y))
+  MESO_TWO(power, power(x, y))
   MESO_TWO(atan2, arc_tangent2(x, y))
   MESO_TWO(hypot, hypotenuse(x, y))
   MESO_TWO(min, y < x ? y : x)

@@ -44,7 +44,7 @@ void fill(RowKernels& kernels);
 namespace avx512 {
 void fill(RowKernels& kernels);
 }
-/// Operations that ask the C library sample by sample: the same code for every instruction set.
+/// hash: whole numbers, sample by sample, the same code for every instruction set.
 void fill_lane_kernels(RowKernels& kernels);
 
 }  // namespace meso::implicit

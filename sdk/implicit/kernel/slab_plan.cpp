@@ -44,9 +44,10 @@ double cost(const Graph& graph, Id id) {
     case Op::acos:
     case Op::atan:
     case Op::atan2:
+      return 4;
     case Op::power:
     case Op::hash:
-      return 15;
+      return 10;
     default:
       return 0.2;
   }
