@@ -74,7 +74,7 @@ class Sampler final : public GridSampler {
 
   void row(std::int32_t j, std::int32_t k, float* values, std::uint64_t* inside) override {
     enter_plane(k);
-    auto* const bits = reinterpret_cast<std::uint16_t*>(inside);  // 16 samples each; x86 is little-endian
+    auto* const bits = reinterpret_cast<std::uint16_t*>(inside);  // row_unit samples each; x86 is little-endian
     if (slab_) {
       const RowPlan& row = slab_->of_row(j);
       std::copy(row.inside.begin(), row.inside.end(), bits);
@@ -83,7 +83,9 @@ class Sampler final : public GridSampler {
     } else {
       rows_->sample(0, padded(samples_), std::size_t(j), std::size_t(k), values, bits);
     }
-    if (samples_ % 64 != 0) inside[samples_ / 64] &= (std::uint64_t{1} << samples_ % 64) - 1;
+    const std::size_t last = samples_ / row_unit;
+    for (std::size_t unit = last; unit < padded(samples_) / row_unit; ++unit)
+      bits[unit] = unit == last ? bits[unit] & ((1U << samples_ % row_unit) - 1) : 0;
   }
 
   void values_at(std::span<const Vec3> points, double* out) override { points_.values_at(points, out); }
