@@ -114,10 +114,10 @@ bool Contouring::grid_fits() {
 }
 
 bool Contouring::vertex_pass() {
-  OrderedOutput output([&](std::string_view bytes) { return sink_.write_points(bytes); }, 2 * jobs_);
+  OrderedOutput output([&](std::string_view bytes) { return sink_.write_points(bytes); }, jobs_);
   pulse_.begin("vertices");
   return for_each_brick(
-      output, [&] { return VertexPass(layout_, source_, sink_, options_.polish); },
+      output, [&] { return VertexPass(layout_, source_, sink_, options_.polish, [&] { return pulse_.check(); }); },
       [&](VertexPass& pass, std::size_t brick, ByteBuffer& bytes) {
         records_[brick] = pass.run(first_plane(brick), last_plane(brick), bytes, [&] {
           output.offer(brick, bytes);
@@ -140,7 +140,7 @@ bool Contouring::number_vertices() {
 }
 
 bool Contouring::face_pass() {
-  OrderedOutput output([&](std::string_view bytes) { return sink_.write_triangles(bytes); }, 2 * jobs_);
+  OrderedOutput output([&](std::string_view bytes) { return sink_.write_triangles(bytes); }, jobs_);
   pulse_.begin("triangles");
   return for_each_brick(
       output, [&] { return FacePass(layout_, sink_); },

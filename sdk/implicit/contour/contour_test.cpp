@@ -256,6 +256,25 @@ TEST(Contour, StopsWhenCancelled) {
   EXPECT_EQ(diagnostics.diagnostics().at(0).code, Code::cancelled);
 }
 
+TEST(Contour, StopsWithinHalfASecondAlsoWhereValuesAreDear) {
+  const auto slow_ball = [](Vec3 p) {
+    double v = norm(p) - 0.9;
+    for (int i = 0; i < 500; ++i) v += 1e-300 * std::sin(i);
+    return v;
+  };
+  for (const bool signs_only : {false, true}) {
+    TriangleMesh mesh;
+    MemoryMeshSink sink(mesh);
+    DiagnosticSink diagnostics;
+    RunOptions run;
+    const auto start = std::chrono::steady_clock::now();
+    run.deadline = start + std::chrono::milliseconds(100);
+    EXPECT_FALSE(contour(FunctionSource(cube(200), slow_ball, signs_only), sink, {}, run, diagnostics));
+    EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::milliseconds(1600));  // of a busy machine
+    EXPECT_EQ(diagnostics.diagnostics().at(0).code, Code::limit_time);
+  }
+}
+
 TEST(Contour, StopsAtTheDeadline) {
   TriangleMesh mesh;
   MemoryMeshSink sink(mesh);

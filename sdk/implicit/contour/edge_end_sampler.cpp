@@ -6,10 +6,16 @@
 #include "bits.hpp"
 
 namespace meso::implicit {
+namespace {
 
-EdgeEndSampler::EdgeEndSampler(const Grid& grid, std::unique_ptr<GridSampler> signs)
+constexpr std::size_t batch = 4096;  // some milliseconds of a dear field
+
+}  // namespace
+
+EdgeEndSampler::EdgeEndSampler(const Grid& grid, std::unique_ptr<GridSampler> signs, std::function<bool()> go_on)
     : grid_(grid),
       source_(std::move(signs)),
+      go_on_(std::move(go_on)),
       rows_(static_cast<std::size_t>(grid.nodes[1])),
       words_((static_cast<std::size_t>(grid.nodes[0]) + 511) / 512 * 8),
       row_values_(words_ * 64) {}
@@ -22,13 +28,16 @@ void EdgeEndSampler::begin_slab(std::int32_t first, std::int32_t last) {
   signs_.assign(rows * words_, 0);
   ends_.assign(rows * words_, 0);
   for (std::int32_t k = first; k < last; ++k)
-    for (std::int32_t j = 0; j < grid_.nodes[1]; ++j) source_->row(j, k, row_values_.data(), at(j, k));
+    for (std::int32_t j = 0; j < grid_.nodes[1] && go_on_(); ++j) source_->row(j, k, row_values_.data(), at(j, k));
   points_.clear();
   first_value_.clear();
   for (std::int32_t k = first; k < last; ++k)
     for (std::int32_t j = 0; j < grid_.nodes[1]; ++j) mark_ends(j, k);
   values_.resize(points_.size());
-  source_->values_at(points_, values_.data());
+  for (std::size_t i = 0; i < points_.size() && go_on_(); i += batch) {
+    const std::size_t count = std::min(batch, points_.size() - i);
+    source_->values_at(std::span(points_).subspan(i, count), values_.data() + i);
+  }
 }
 
 void EdgeEndSampler::mark_ends(std::int32_t j, std::int32_t k) {

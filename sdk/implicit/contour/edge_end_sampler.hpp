@@ -5,6 +5,7 @@
 
 #include <tbb/cache_aligned_allocator.h>
 
+#include <functional>
 #include <vector>
 
 #include "layout.hpp"
@@ -14,7 +15,8 @@ namespace meso::implicit {
 
 class EdgeEndSampler final : public GridSampler {
  public:
-  EdgeEndSampler(const Grid& grid, std::unique_ptr<GridSampler> signs);
+  /// `go_on` is asked now and then; after it has said no, samples mean nothing.
+  EdgeEndSampler(const Grid& grid, std::unique_ptr<GridSampler> signs, std::function<bool()> go_on);
 
   void begin_slab(std::int32_t first, std::int32_t last) override;
   void row(std::int32_t j, std::int32_t k, float* values, std::uint64_t* inside) override;
@@ -28,6 +30,7 @@ class EdgeEndSampler final : public GridSampler {
 
   Grid grid_;
   std::unique_ptr<GridSampler> source_;
+  std::function<bool()> go_on_;
   std::size_t rows_, words_;
   std::int32_t first_ = 0, last_ = 0;
   std::vector<std::uint64_t, tbb::cache_aligned_allocator<std::uint64_t>> signs_;

@@ -27,6 +27,11 @@ class Pulse {
     if (done % beats_between_looks == 0) look(done);
     return !stopped();
   }
+  /// Within a long row's work. False: stop.
+  [[nodiscard]] bool check() {
+    look(done_);
+    return !stopped();
+  }
   void stop() { stopped_ = true; }
   [[nodiscard]] bool stopped() const { return stopped_.load(std::memory_order_relaxed); }
   [[nodiscard]] bool out_of_time() const { return out_of_time_; }

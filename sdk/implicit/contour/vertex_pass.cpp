@@ -36,7 +36,8 @@ unsigned corners_inside(const CellRows& rows, std::size_t b) {
 
 }  // namespace
 
-VertexPass::VertexPass(const Layout& layout, const GridSource& source, const MeshSink& sink, bool polish)
+VertexPass::VertexPass(const Layout& layout, const GridSource& source, const MeshSink& sink, bool polish,
+                       std::function<bool()> go_on)
     : layout_(layout),
       sampler_(source.sampler()),
       sink_(sink),
@@ -47,7 +48,7 @@ VertexPass::VertexPass(const Layout& layout, const GridSource& source, const Mes
       y_(layout.nx + 1),
       z_(layout.nx + 1),
       points_(chunk + 4 * (layout.nx + 1)) {
-  if (signs_only_) sampler_ = std::make_unique<EdgeEndSampler>(source.grid(), std::move(sampler_));
+  if (signs_only_) sampler_ = std::make_unique<EdgeEndSampler>(source.grid(), std::move(sampler_), std::move(go_on));
 }
 
 BrickRecord VertexPass::run(std::size_t first, std::size_t last, ByteBuffer& out,

@@ -18,7 +18,9 @@ namespace meso::implicit {
 /// One per thread.
 class VertexPass {
  public:
-  VertexPass(const Layout& layout, const GridSource& source, const MeshSink& sink, bool polish);
+  /// `go_on` is asked within long work: false ends it.
+  VertexPass(const Layout& layout, const GridSource& source, const MeshSink& sink, bool polish,
+             std::function<bool()> go_on);
 
   /// Planes [first, last) of 0 ... nodes; the last of these is the layer above the grid. Calls `after_row` now and
   /// then: false stops the work.
