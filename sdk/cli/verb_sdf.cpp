@@ -23,7 +23,7 @@ void add_flags(CLI::App& flags, Run& run, operations::SdfOptions& options) {
   flags.add_flag("--no-slivers", options.no_slivers, "Collapse very narrow triangles");
   flags.add_flag("--strict-math", options.strict_math, "Formulas as written, none regrouped");
   flags.add_flag("--double", options.double_coordinates, "Coordinates in double precision (.ply)");
-  flags.add_flag("--ascii", options.ascii, "Text instead of binary (.ply, .stl)");
+  flags.add_flag("--ascii", options.ascii, "Text instead of binary (.stl)");
   add_work_flags(flags, run.flags);
   add_json_flag(flags, run.flags);
   add_no_clobber_flag(flags, run.flags);
@@ -82,9 +82,13 @@ Json report_json(const operations::SdfReport& r, const std::string& out) {
 }
 
 void print_summary(const operations::SdfReport& r, const std::string& out) {
-  fmt::print(stderr, "{}: {} triangles, {} vertices, Euler number {}, {} bytes\n{} x {} x {} samples, {:.2f} s\n", out,
-             r.triangles, r.points, r.euler, r.bytes, r.grid.nodes[0], r.grid.nodes[1], r.grid.nodes[2],
-             r.seconds.total);
+  fmt::print(stderr, "{}: {} triangles, {} vertices, Euler number {}, {} bytes\n", out, r.triangles, r.points, r.euler,
+             r.bytes);
+  fmt::print(stderr, "{} x {} x {} samples: {:.3f} s reading, {:.3f} s contouring and writing\n", r.grid.nodes[0],
+             r.grid.nodes[1], r.grid.nodes[2], r.seconds.read, r.seconds.contour);
+  if (r.undefined > 0)
+    fmt::print(stderr, "the field has no value beside {} of the crossings; such points count as outside\n",
+               r.undefined);
 }
 
 /// The values of our flags, checked as on any other verb.

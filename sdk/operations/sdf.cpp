@@ -8,12 +8,11 @@
 #include <iterator>
 #include <system_error>
 
-#include "file_extension.hpp"
 #include "measured_mesh_sink.hpp"
 #include "meso/export_mesh/mesh_writer.hpp"
 #include "meso/implicit/compile.hpp"
 #include "meso/implicit/contour.hpp"
-#include "meso/import_surface_mesh/read_stl.hpp"
+#include "meso/import_surface_mesh/read_surface_mesh.hpp"
 #include "meso/mesh_distance/mesh_field.hpp"
 #include "meso/sdf/build_field.hpp"
 #include "stopwatch.hpp"
@@ -24,20 +23,21 @@ namespace fs = std::filesystem;
 namespace {
 
 std::optional<MeshFormat> format_of(const std::string& output, const SdfOptions& options, DiagnosticSink& sink) {
-  const std::string extension = lower_extension(output);
-  if (extension == ".ply") return options.double_coordinates ? MeshFormat::ply_double : MeshFormat::ply;
-  sink.report({.code = Code::sdf_extension, .args = {output}});
-  return std::nullopt;
+  const auto format = mesh_format_of(output);
+  const auto refuse = [&](const char* why) {
+    sink.report({.code = Code::usage, .args = {why}});
+    return std::nullopt;
+  };
+  if (!format) sink.report({.code = Code::sdf_extension, .args = {output}});
+  if (options.double_coordinates && format != MeshFormat::ply) return refuse("--double has an effect for .ply only");
+  if (options.ascii && format != MeshFormat::stl) return refuse("--ascii has an effect for .stl only");
+  if (options.double_coordinates) return MeshFormat::ply_double;
+  return options.ascii ? MeshFormat::stl_ascii : format;
 }
 
 std::shared_ptr<const implicit::ExternalField> load_field(const std::string& path, const RunOptions& run,
                                                           DiagnosticSink& sink) {
-  const auto read = read_text(path);
-  if (!read.text) {
-    sink.report({.code = Code::file_not_found, .args = {path, read.why_not}});
-    return nullptr;
-  }
-  const auto mesh = read_stl(*read.text, path, sink);
+  const auto mesh = read_surface_mesh_file(path, sink);
   return mesh ? implicit::MeshField::make(*mesh, path, run, sink) : nullptr;
 }
 
@@ -78,7 +78,9 @@ bool write_surface(const implicit::GridSource& source, MeshFormat format, const 
   const auto writer = make_mesh_writer(format, *file);
   MeasuredMeshSink measured(*writer);
   const std::size_t errors = sink.error_count();
-  const auto contoured = implicit::contour(source, options.measure ? measured : *writer, {}, options.run, sink);
+  const auto contoured =
+      implicit::contour(source, options.measure ? measured : *writer,
+                        {.polish = options.polish, .collapse_slivers = options.no_slivers}, options.run, sink);
   if (!contoured && sink.error_count() == errors && options.run.cancelled && options.run.cancelled()) {
     sink.report({.code = Code::cancelled});
   }

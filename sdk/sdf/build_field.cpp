@@ -124,7 +124,9 @@ std::optional<Field> build_field(const Program& program, const MeshLoader& load_
 std::optional<ProgramBox> box_of(const Program& program, const Field& field, DiagnosticSink& sink) {
   if (program.box) return ProgramBox{*program.box};
   const Box3 own = field.bounds();
-  if (own.empty()) return ProgramBox{.box = {{-1, -1, -1}, {1, 1, 1}}, .certainly_empty = true};
+  // A box without thickness holds no inside either: zero is outside.
+  if (!(own.min.x < own.max.x && own.min.y < own.max.y && own.min.z < own.max.z))
+    return ProgramBox{.box = {{-1, -1, -1}, {1, 1, 1}}, .certainly_empty = true};
   Box3 box = own;
   bool inverted = false;
   for (std::size_t i = 0; i < 3; ++i) {

@@ -48,7 +48,7 @@ TEST(BuildField, Identities) {
   expect_same("tpms.s scale 2 scale 1/2", "tpms.s");
   expect_same("ball move 0,0,1 mirror 0,0,2", "ball move 0,0,-1");
   expect_same("ball eccentric-shell -.25,.25", "ball shell 0.5");
-  expect_same("expression 'x+y+z-1'", "half-space 1,1,1,1/sqrt(3) scale 1/sqrt(3)", 0.5 / 3);
+  expect_same("expression '(x+y+z-1)/sqrt(3)'", "half-space 1,1,1,1/sqrt(3)");
 }
 
 TEST(BuildField, DifferenceTakesTheUpperFromTheLower) {

@@ -28,7 +28,7 @@ struct SdfOptions {
   bool polish = false;              ///< vertices on the surface itself, not on the samples' interpolant
   bool no_slivers = false;          ///< very narrow triangles collapsed
   bool double_coordinates = false;  ///< of .ply
-  bool ascii = false;               ///< .ply and .stl
+  bool ascii = false;               ///< of .stl
   ExistingFile existing = ExistingFile::replace;
   RunOptions run{};
 };
