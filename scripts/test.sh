@@ -48,17 +48,17 @@ build_and_test() {  # build_and_test PRESET [ctest arguments]
 }
 
 if $all; then step packages ./scripts/install-deps.sh --all; else step packages ./scripts/install-deps.sh; fi
-# "desktop" needs programs with a window, "fuzz" runs for minutes: both belong to --all.
+# "desktop" needs programs with a window, "fuzz" and "slow" run for minutes: they belong to --all.
 # The core profile of the conformance cases runs in core-only, whose command starts in a tenth of the time.
-step dev build_and_test dev -LE 'desktop|fuzz' -E '^conformance_core$'
-step core-only build_and_test core-only -LE 'desktop|fuzz'
+step dev build_and_test dev -LE 'desktop|fuzz|slow' -E '^conformance_core$'
+step core-only build_and_test core-only -LE 'desktop|fuzz|slow'
 step dependencies ./scripts/check_dependencies.py build/dev/bin/meso
 step diagnostics-page diff docs/diagnostics.md <(./scripts/generate_diagnostics.py md)
 if command -v clang-format-14 > /dev/null; then step format ./scripts/check_format.sh; fi
 
 if $all; then
-  step desktop ctest --preset dev -L 'desktop|fuzz'
-  step asan build_and_test asan -LE 'desktop|fuzz'
+  step desktop ctest --preset dev -L 'desktop|fuzz|slow'
+  step asan build_and_test asan -LE 'desktop|fuzz|slow'
   step tidy build tidy
   step benchmarks build release
   for bench in build/release/bin/*bench*; do
