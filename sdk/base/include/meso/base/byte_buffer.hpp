@@ -24,6 +24,7 @@ class ByteBuffer {
   }
   void advance(std::size_t bytes) { size_ += bytes; }
   void append(std::string_view text) {
+    if (text.empty()) return;
     std::memcpy(claim(text.size()), text.data(), text.size());
     advance(text.size());
   }
