@@ -21,20 +21,18 @@ namespace {
 constexpr std::size_t grain = 1 << 14;
 using Blocks = tbb::blocked_range<std::size_t>;
 
-Box3 box_of(const TriangleMesh& mesh) {
-  return tbb::parallel_reduce(
-      Blocks(0, mesh.triangles.size(), grain), Box3{},
-      [&](const Blocks& range, Box3 box) {
-        for (std::size_t i = range.begin(); i != range.end(); ++i) {
-          for (const std::uint32_t p : mesh.triangles[i]) box.extend(mesh.points[p]);
-        }
-        return box;
-      },
-      [](Box3 a, const Box3& b) {
-        a.extend(b.min);
-        a.extend(b.max);
-        return a;
-      });
+/// std::fmin is a call.
+void extend(Box3& box, Vec3 p) {
+  for (std::size_t i = 0; i < 3; ++i) {
+    box.min[i] = std::min(box.min[i], p[i]);
+    box.max[i] = std::max(box.max[i], p[i]);
+  }
+}
+
+Box3 box_of(const std::vector<Vec3>& points) {
+  Box3 box;
+  for (const Vec3& p : points) extend(box, p);
+  return box;
 }
 
 bool in_range(const TriangleMesh& mesh) {
@@ -77,7 +75,7 @@ void pair_opposite(std::span<const Placed> run, const TriangleMesh& mesh, const 
                    std::vector<Fate>& fates, std::size_t first) {
   std::vector<Face> faces;
   for (std::size_t i = 0; i < run.size(); ++i) {
-    const Face f = face_of(mesh.triangles[run[i].triangle], keys, first + i);
+    const Face f = face_of(mesh.triangles[run[i].triangle()], keys, first + i);
     if (f.keys[0] != f.keys[1] && f.keys[1] != f.keys[2]) faces.push_back(f);
   }
   std::sort(faces.begin(), faces.end(), [](const Face& a, const Face& b) {
@@ -103,7 +101,7 @@ std::uint64_t drop_opposite(std::vector<Placed>& order, const TriangleMesh& mesh
   std::vector<Fate> fates;
   for (std::size_t first = 0; first < order.size();) {
     std::size_t last = first + 1;
-    while (last < order.size() && order[last].place == order[first].place) ++last;
+    while (last < order.size() && order[last].place() == order[first].place()) ++last;
     if (last - first > 1) {
       if (fates.empty()) fates.resize(order.size(), Fate::kept);
       pair_opposite(std::span(order).subspan(first, last - first), mesh, keys, fates, first);
@@ -121,51 +119,43 @@ std::uint64_t drop_opposite(std::vector<Placed>& order, const TriangleMesh& mesh
   return gone;
 }
 
-/// Zero if every edge is used as often in one direction as in the other.
-std::uint64_t boundary_key(const std::vector<Placed>& order, const TriangleMesh& mesh,
-                           const std::vector<std::uint64_t>& keys) {
-  return tbb::parallel_reduce(
-      Blocks(0, order.size(), grain), std::uint64_t{0},
-      [&](const Blocks& range, std::uint64_t sum) {
-        for (std::size_t i = range.begin(); i != range.end(); ++i) {
-          const auto& t = mesh.triangles[order[i].triangle];
-          const std::uint64_t a = keys[t[0]], b = keys[t[1]], c = keys[t[2]];
-          sum += edge_key(a, b) + edge_key(b, c) + edge_key(c, a);
-        }
-        return sum;
-      },
-      std::plus<>());
-}
+/// Sums over triangles.
+struct Sums {
+  std::uint64_t boundary = 0;  ///< of edge keys: zero if every edge is used as often in one direction as in the other
+  double volume = 0;
+  std::uint64_t degenerate = 0;
+  Box3 box;
 
-/// The corners themselves, and what takes no second look at them.
-void gather(CleanMesh& out, const std::vector<Placed>& order, const TriangleMesh& mesh,
-            const std::vector<bool>& turned) {
-  struct Sums {
-    double volume = 0;
-    std::uint64_t degenerate = 0;
-  };
-  out.triangles.resize(order.size());
-  const Vec3 middle = 0.5 * out.box.min + 0.5 * out.box.max;
-  const Sums sums = tbb::parallel_deterministic_reduce(
+  friend Sums operator+(Sums a, const Sums& b) {
+    extend(a.box, b.box.min);
+    extend(a.box, b.box.max);
+    return {a.boundary + b.boundary, a.volume + b.volume, a.degenerate + b.degenerate, a.box};
+  }
+};
+
+/// The corners themselves, in order.
+Sums gather(std::vector<Triangle>& out, const std::vector<Placed>& order, const TriangleMesh& mesh,
+            const std::vector<std::uint64_t>& keys, Vec3 middle, const std::vector<bool>& turned) {
+  out.resize(order.size());
+  return tbb::parallel_deterministic_reduce(
       Blocks(0, order.size(), grain), Sums{},
       [&](const Blocks& range, Sums s) {
         for (std::size_t i = range.begin(); i != range.end(); ++i) {
-          const auto& corners = mesh.triangles[order[i].triangle];
-          Triangle& t = out.triangles[i];
-          for (std::size_t c = 0; c < 3; ++c) t[c] = without_specks(mesh.points[corners[c]]);
-          if (!turned.empty() && turned[i]) std::swap(t[1], t[2]);
+          std::array<std::uint32_t, 3> corners = mesh.triangles[order[i].triangle()];
+          if (!turned.empty() && turned[i]) std::swap(corners[1], corners[2]);
+          Triangle& t = out[i];
+          for (std::size_t c = 0; c < 3; ++c) {
+            t[c] = without_specks(mesh.points[corners[c]]);
+            extend(s.box, t[c]);
+            s.boundary += edge_key(keys[corners[c]], keys[corners[(c + 1) % 3]]);
+          }
           const Vec3 n = cross(t[1] - t[0], t[2] - t[0]);
           s.volume += dot(n, t[0] - middle);
           s.degenerate += n == Vec3{} ? 1 : 0;
         }
         return s;
       },
-      [](const Sums& a, const Sums& b) {
-        return Sums{a.volume + b.volume, a.degenerate + b.degenerate};
-      });
-  out.quality.triangles = order.size();
-  out.quality.degenerate = sums.degenerate;
-  out.quality.inside_out = sums.volume < 0;
+      std::plus<>());
 }
 
 void report(const MeshQuality& q, const std::string& name, DiagnosticSink& sink) {
@@ -195,17 +185,26 @@ std::optional<CleanMesh> clean_mesh(const TriangleMesh& mesh, const std::string&
     sink.report({.code = Code::mesh_coordinates, .where = {.file = name}});
     return {};
   }
-  CleanMesh out{.triangles = {}, .box = box_of(mesh), .quality = {}};
-  std::vector<Placed> order = spatial_order(mesh, out.box);
+  const Box3 points_box = box_of(mesh.points);
+  const Vec3 middle = 0.5 * points_box.min + 0.5 * points_box.max;
+  std::vector<Placed> order = spatial_order(mesh, points_box);
   if (stop()) return {};
   const std::vector<std::uint64_t> keys = keys_of(mesh.points);
-  out.quality.cancelled = drop_opposite(order, mesh, keys);
-  out.quality.closed = boundary_key(order, mesh, keys) == 0;
+  CleanMesh out;
+  MeshQuality& quality = out.quality;
+  quality.cancelled = drop_opposite(order, mesh, keys);
+  Sums sums = gather(out.triangles, order, mesh, keys, middle, {});
   if (stop()) return {};
-  std::vector<bool> turned;
-  if (!out.quality.closed) turned = mend_mesh(order, mesh, keys, out.quality);
-  if (stop()) return {};
-  gather(out, order, mesh, turned);
+  if (sums.boundary != 0) {
+    const std::vector<bool> turned = mend_mesh(order, mesh, keys, quality);
+    sums = gather(out.triangles, order, mesh, keys, middle, turned);
+    if (stop()) return {};
+  }
+  out.box = sums.box;
+  quality.triangles = order.size();
+  quality.degenerate = sums.degenerate;
+  quality.closed = sums.boundary == 0;
+  quality.inside_out = quality.closed && sums.volume < 0;
   report(out.quality, name, sink);
   return out;
 }

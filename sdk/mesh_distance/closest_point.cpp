@@ -24,9 +24,9 @@ Vec3 to_closest_point(const Triangle& t, Vec3 p) {
   const double b = dot(cross(ap, ac), n), c = dot(cross(ab, ap), n), a = n2 - b - c;
   const bool foot_inside = n2 > 0 && a >= 0 && b >= 0 && c >= 0;
   // n2 = (longest edge * height)^2. Where the height is much smaller than the edge, rounding turns the normal, and the
-  // weights with it; the foot is still a point of the triangle, but an edge may be nearer.
+  // weights with it: then the foot is approached in steps, and edges may be nearer.
   const double size2 = std::max(dot(ab, ab), dot(ac, ac));
-  const bool slender = !(n2 > 1e-6 * size2 * size2);
+  const bool slender = !(n2 > 1e-4 * size2 * size2);
   Vec3 from_best = ap;
   double best2 = HUGE_VAL;
   const auto consider = [&](Vec3 q) {
@@ -34,7 +34,19 @@ Vec3 to_closest_point(const Triangle& t, Vec3 p) {
     const double d2 = dot(d, d);
     if (d2 < best2) from_best = d, best2 = d2;
   };
-  if (foot_inside) consider((b / n2) * ab + (c / n2) * ac);
+  if (foot_inside && !slender) consider((b / n2) * ab + (c / n2) * ac);
+  if (n2 > 0 && slender) {
+    // Each step leaves a fraction of the one before it, of about rounding over the sine of the sharp angle.
+    double v = 0, w = 0;
+    Vec3 rest = ap;
+    for (int step = 0; step < 4; ++step) {
+      v += dot(cross(rest, ac), n) / n2;
+      w += dot(cross(ab, rest), n) / n2;
+      const Vec3 foot = v * ab + w * ac;
+      if (v >= 0 && w >= 0 && v + w <= 1) consider(foot);
+      rest = ap - foot;
+    }
+  }
   // From outside, only edges that the foot is beyond are seen; the nearest point is on one of them.
   if (slender || c < 0) consider(closest_on_edge(ab, ap));
   if (slender || b < 0) consider(closest_on_edge(ac, ap));

@@ -102,7 +102,7 @@ std::vector<Keys> corner_keys(const std::vector<Placed>& order, const TriangleMe
   std::vector<Keys> out;
   out.reserve(order.size());
   for (const Placed& p : order) {
-    const auto& [a, b, c] = mesh.triangles[p.triangle];
+    const auto& [a, b, c] = mesh.triangles[p.triangle()];
     out.push_back({keys[a], keys[b], keys[c]});
   }
   return out;
@@ -142,7 +142,7 @@ std::vector<bool> minority(const std::vector<Placed>& order, const TriangleMesh&
   std::vector<double> balance(order.size(), 0);  // by piece: area like the root less area opposed
   for (std::uint32_t i = 0; i < order.size(); ++i) {
     const Pieces::Root root = pieces.find(i);
-    balance[root.piece] += (root.opposed ? -1 : 1) * area(mesh.triangles[order[i].triangle], mesh);
+    balance[root.piece] += (root.opposed ? -1 : 1) * area(mesh.triangles[order[i].triangle()], mesh);
     if (hopeless[i]) hopeless[root.piece] = true;
   }
   std::vector<bool> turned(order.size());
@@ -171,10 +171,8 @@ std::vector<bool> mend_mesh(std::vector<Placed>& order, const TriangleMesh& mesh
   for (std::size_t i = 0; i < corners.size(); ++i) {
     if (turned[i]) std::swap(corners[i][1], corners[i][2]);
   }
-  quality.closed = true;
   visit_edges(sorted_sides(corners), [&](std::span<const Side> edge) {
     if (imbalance(edge) == 0) return;
-    quality.closed = false;
     ++(edge.size() == 1 ? quality.open_edges : edge.size() == 2 ? quality.flipped_edges : quality.multiple_edges);
   });
   return turned;

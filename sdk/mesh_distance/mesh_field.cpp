@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "meso/mesh_distance/mesh_field.hpp"
 
+#include <tbb/info.h>
 #include <tbb/task_arena.h>
 
 #include <algorithm>
@@ -9,6 +10,7 @@
 #include "clean_mesh.hpp"
 #include "prepared_mesh.hpp"
 #include "signed_mesh.hpp"
+#include "spatial_order.hpp"
 
 namespace meso::implicit {
 namespace {
@@ -24,15 +26,18 @@ void report_stop(const RunOptions& options, const std::string& name, DiagnosticS
 
 std::shared_ptr<const MeshField> MeshField::make(const TriangleMesh& mesh, const std::string& name,
                                                  const RunOptions& options, DiagnosticSink& sink) {
-  constexpr std::size_t most_triangles = std::size_t{1} << 29;
-  if (mesh.triangles.size() > std::min<std::uint64_t>(options.max_memory_bytes / bytes_per_triangle, most_triangles)) {
+  if (mesh.triangles.size() >
+      std::min<std::uint64_t>(options.max_memory_bytes / bytes_per_triangle, Placed::most_triangles)) {
     const std::uint64_t mib = mesh.triangles.size() * bytes_per_triangle >> 20;
     sink.report({.code = Code::limit_memory, .where = {.file = name}, .args = {std::to_string(mib) + " MiB"}});
     return {};
   }
   StopPoll stop(options);
   std::shared_ptr<const SignedMesh> made;
-  tbb::task_arena arena(options.jobs == 0 ? tbb::task_arena::automatic : static_cast<int>(options.jobs));
+  // More threads than there are cores would only earn a warning of TBB's.
+  const int cores = tbb::info::default_concurrency();
+  tbb::task_arena arena(options.jobs == 0 ? cores
+                                          : static_cast<int>(std::min<unsigned>(options.jobs, unsigned(cores))));
   arena.execute([&] {
     std::optional<CleanMesh> clean = clean_mesh(mesh, name, stop, sink);
     if (!clean) return;
@@ -66,12 +71,13 @@ Interval MeshField::interval(const Box3& box) const {
 double MeshField::lipschitz() const { return quality().closed ? 1 : HUGE_VAL; }
 
 Box3 MeshField::bounds(double level) const {
+  // A point as deep inside a closed surface is that far from its box; an open one may have it on the box.
+  if (!quality().closed) level = std::max(level, 0.0);
   Box3 box = mesh_->tree().box();
   for (std::size_t i = 0; i < 3; ++i) {
     box.min[i] -= level;
     box.max[i] += level;
   }
-  // A point deeper inside than any box face is far from it does not exist.
   const bool empty = box.min.x > box.max.x || box.min.y > box.max.y || box.min.z > box.max.z;
   return empty ? Box3{} : box;
 }

@@ -29,8 +29,9 @@ class Search {
     for (const Vec3 corner :
          {half, Vec3{-half.x, half.y, half.z}, Vec3{half.x, -half.y, half.z}, Vec3{half.x, half.y, -half.z}})
       reach = std::max(reach, norm(field_from_grid_.linear * corner));
-    const SignedMesh::Value at_middle = mesh_.distance(field_from_grid_ * middle, hint);
-    if (at_middle.distance > (band_ + reach) * (1 + 1e-9)) return;
+    const double within = (band_ + reach) * (1 + 1e-9);
+    const SignedMesh::Value at_middle = mesh_.distance(field_from_grid_ * middle, hint, within);
+    if (at_middle.distance > within) return;
     if (size == NearBlocks::edge) return mark_(first);
     const std::int32_t h = size / 2;
     for (int child = 0; child < 8; ++child) {
@@ -50,7 +51,7 @@ class Search {
 }  // namespace
 
 NearBlocks::NearBlocks(const SignedMesh& mesh, const Grid& grid, const Affine& field_from_grid, double band) {
-  constexpr std::int32_t start = 8 * edge;
+  constexpr std::int32_t start = 16 * edge;
   Index roots{};
   for (std::size_t a = 0; a < 3; ++a) {
     blocks_[a] = (grid.nodes[a] + edge - 1) / edge;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Blocks of 8 x 8 x 8 nodes in which the distance may be as small as a band.
+// Blocks of 4 x 4 x 4 nodes in which the distance may be as small as a band.
 
 #include <vector>
 
@@ -11,7 +11,7 @@ namespace meso::implicit {
 
 class NearBlocks {
  public:
-  static constexpr std::int32_t edge = 8;
+  static constexpr std::int32_t edge = 4;
 
   NearBlocks(const SignedMesh& mesh, const Grid& grid, const Affine& field_from_grid, double band);
 

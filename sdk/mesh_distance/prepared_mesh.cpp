@@ -138,8 +138,9 @@ class Rows final : public ExternalRows {
         i |= NearBlocks::edge - 1;
         continue;
       }
-      const SignedMesh::Value at = shared_->mesh->distance(shared_->point(i, j, k), hint_);
+      const SignedMesh::Value at = shared_->mesh->distance(shared_->point(i, j, k), hint_, shared_->band);
       hint_ = at.triangle;
+      if (!(at.distance <= shared_->band)) continue;
       out[i - first] = SignedMesh::with_sign(at.distance, out[i - first] < 0 ? -1 : 1);
     }
   }

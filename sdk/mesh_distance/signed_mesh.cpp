@@ -12,8 +12,8 @@ SignedMesh::SignedMesh(TriangleTree tree, const MeshQuality& quality) : tree_(st
   if (!quality_.closed) winding_ = WindingNumber(tree_);
 }
 
-SignedMesh::Value SignedMesh::distance(Vec3 p, std::uint32_t hint) const {
-  const TriangleTree::Nearest nearest = tree_.nearest(p, hint);
+SignedMesh::Value SignedMesh::distance(Vec3 p, std::uint32_t hint, double within) const {
+  const TriangleTree::Nearest nearest = tree_.nearest(p, hint, within);
   return {std::sqrt(nearest.squared_distance), nearest.triangle};
 }
 

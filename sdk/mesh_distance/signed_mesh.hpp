@@ -18,8 +18,8 @@ class SignedMesh {
   SignedMesh(TriangleTree tree, const MeshQuality& quality);
 
   [[nodiscard]] double value(Vec3 p) const;
-  /// Unsigned.
-  [[nodiscard]] Value distance(Vec3 p, std::uint32_t hint) const;
+  /// Unsigned. What is farther than `within` may be reported as farther than it is.
+  [[nodiscard]] Value distance(Vec3 p, std::uint32_t hint, double within = HUGE_VAL) const;
   /// -1 inside, 0 on the surface, 1 outside.
   [[nodiscard]] int sign(Vec3 p) const;
   /// What `sign` says of a point that is not on the surface of an open mesh.

@@ -10,10 +10,10 @@
 namespace meso::implicit {
 namespace {
 
-constexpr unsigned bits_per_axis = 16, digit_bits = 12, digits = 3 * bits_per_axis / digit_bits;
+constexpr unsigned bits_per_axis = 12, digit_bits = 9, digits = 3 * bits_per_axis / digit_bits;
 constexpr std::size_t digit_values = 1u << digit_bits;
 
-/// 16 bits, two zeros before each.
+/// 12 bits, two zeros before each.
 std::uint64_t spread(std::uint64_t x) {
   x = (x | x << 16) & 0x0000ff0000ffu;
   x = (x | x << 8) & 0x00f00f00f00fu;
@@ -45,7 +45,7 @@ class Curve {
 /// One stable pass over one digit of the place.
 void sort_by_digit(const std::vector<Placed>& from, std::vector<Placed>& to, unsigned shift) {
   std::vector<std::size_t> next(digit_values, 0);
-  const auto digit = [shift](const Placed& p) { return (p.place >> shift) & (digit_values - 1); };
+  const auto digit = [shift](const Placed& p) { return (p.place() >> shift) & (digit_values - 1); };
   for (const Placed& p : from) ++next[digit(p)];
   std::size_t sum = 0;
   for (std::size_t& n : next) sum += std::exchange(n, sum);
@@ -60,7 +60,7 @@ std::vector<Placed> spatial_order(const TriangleMesh& mesh, const Box3& box) {
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, order.size(), 1 << 14), [&](const auto& range) {
     for (std::size_t i = range.begin(); i != range.end(); ++i) {
       const auto& [a, b, c] = mesh.triangles[i];
-      order[i] = {curve.place(mesh.points[a], mesh.points[b], mesh.points[c]), static_cast<std::uint32_t>(i)};
+      order[i] = {curve.place(mesh.points[a], mesh.points[b], mesh.points[c]), i};
     }
   });
   for (unsigned d = 0; d < digits; ++d) {

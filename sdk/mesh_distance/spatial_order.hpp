@@ -9,13 +9,21 @@
 
 namespace meso::implicit {
 
-/// Place on the curve, and a triangle. Equal triangles have equal places, whatever the order of their corners.
-struct Placed {
-  std::uint64_t place;
-  std::uint32_t triangle;
+/// Place on the curve, 12 bits an axis, and a triangle. Equal triangles have equal places, whatever the order of their
+/// corners.
+class Placed {
+ public:
+  static constexpr std::size_t most_triangles = std::size_t{1} << 28;
+  Placed() = default;
+  Placed(std::uint64_t place, std::uint64_t triangle) : bits_(place << 28 | triangle) {}
+  [[nodiscard]] std::uint64_t place() const { return bits_ >> 28; }
+  [[nodiscard]] std::uint32_t triangle() const { return static_cast<std::uint32_t>(bits_ & (most_triangles - 1)); }
+
+ private:
+  std::uint64_t bits_;
 };
 
-/// Sorted by place, equal ones by number. `box` holds all points.
+/// Sorted by place, equal ones by number. `box` holds all points. REQUIRES: at most most_triangles.
 [[nodiscard]] std::vector<Placed> spatial_order(const TriangleMesh& mesh, const Box3& box);
 
 }  // namespace meso::implicit

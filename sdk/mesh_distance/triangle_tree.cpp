@@ -2,6 +2,9 @@
 #include "triangle_tree.hpp"
 
 #include <algorithm>
+#include <bit>
+#include <cstring>
+#include <ranges>
 
 #include "closest_point.hpp"
 #include "tree_builder.hpp"
@@ -29,18 +32,66 @@ struct Candidate {
   std::uint32_t child;
 };
 
-std::array<double, 4> squared_distances(const Node& node, Vec3 p) {
-  std::array<double, 4> out{};
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    const double x = p[axis];
-    for (std::size_t i = 0; i < 4; ++i) {
-      const double below = node.low[axis][i] - x, above = x - node.high[axis][i];
-      const double beside = std::max(std::max(below, above), 0.0);
-      out[i] += beside * beside;
-    }
-  }
+using Float4 [[gnu::vector_size(16)]] = float;
+
+Float4 load(const std::array<float, 4>& x) {
+  Float4 out;
+  std::memcpy(&out, x.data(), sizeof out);
   return out;
 }
+Float4 larger(Float4 a, Float4 b) { return a > b ? a : b; }
+
+/// Good to 5e-7 of the point's distance from the middle of the mesh.
+std::array<float, 4> squared_distances(const Node& node, const std::array<float, 3>& p) {
+  Float4 sum{};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const Float4 beside = larger(larger(load(node.low[axis]) - p[axis], p[axis] - load(node.high[axis])), Float4{});
+    sum += beside * beside;
+  }
+  return std::bit_cast<std::array<float, 4>>(sum);
+}
+
+/// For points so far away that floats would not tell one box from another.
+std::array<double, 4> squared_distances(const Node& node, Vec3 p) {
+  std::array<double, 4> sum{};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    for (std::size_t i = 0; i < 4; ++i) {
+      const double beside = std::max({node.low[axis][i] - p[axis], p[axis] - node.high[axis][i], 0.0});
+      sum[i] += beside * beside;
+    }
+  }
+  return sum;
+}
+
+std::array<float, 3> to_floats(Vec3 p) {
+  return {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)};
+}
+
+/// How far a ray along x is from each child: the largest of what it lacks along y and z, and of how far the child is
+/// behind its beginning.
+std::array<float, 4> ray_distances(const Node& node, const std::array<float, 3>& p, int direction) {
+  Float4 most = direction > 0 ? p[0] - load(node.high[0]) : load(node.low[0]) - p[0];
+  for (std::size_t axis = 1; axis < 3; ++axis)
+    most = larger(most, larger(load(node.low[axis]) - p[axis], p[axis] - load(node.high[axis])));
+  return std::bit_cast<std::array<float, 4>>(most);
+}
+
+void meet(const Triangle& t, Vec3 p, int direction, Winding& winding) {
+  const RayView view = view_along_x(t, p.y, p.z);
+  const int side = view.crossing != 0 ? side_sign(t, p) : 0;
+  // The normal points along x if the crossing is 1, so that p is on its side if p is beyond the triangle.
+  if (view.crossing * side * direction < 0) winding.number += direction * view.crossing;
+  const bool may_touch = view.touches || (view.crossing != 0 && side == 0);
+  if (may_touch && is_on(t, p)) winding.on_surface = true;
+}
+
+/// The triangles of a child that is a leaf.
+auto triangles_of(std::uint32_t child) {
+  const std::uint32_t first = child & Node::first_mask;
+  return std::views::iota(first, first + ((child & ~Node::leaf) >> Node::count_shift) + 1);
+}
+
+double size_of(Vec3 p) { return std::abs(p.x) + std::abs(p.y) + std::abs(p.z); }
 
 double square(double x) { return x * x; }
 
@@ -54,76 +105,88 @@ TriangleTree::TriangleTree(std::vector<Triangle> triangles, const Box3& box, Sto
   nodes_ = TreeBuilder(triangles_, middle_, unit_, stop).build();
 }
 
-TriangleTree::Nearest TriangleTree::nearest(Vec3 p, std::uint32_t hint) const {
-  const Vec3 q = to_unit(p);
-  // Rounding in what a triangle or a box says about its distance stays below this. A box is skipped only if it is
-  // farther than the best triangle by more, so that the best one is found from every beginning.
-  const double slack = 1e-14 * (std::abs(q.x) + std::abs(q.y) + std::abs(q.z) + 2);
-  Nearest best;
-  double limit = HUGE_VAL;
-  const auto try_triangle = [&](std::uint32_t i) {
-    const Vec3 offset = to_closest_point(triangles_[i], p);
-    const double d2 = dot(offset, offset);
-    if (!(d2 < best.squared_distance)) return;
-    best = {d2, offset, i};
-    limit = square(unit_ * std::sqrt(d2) + slack);
-  };
-  if (hint < triangles_.size()) try_triangle(hint);
+/// Triangle by triangle, the best one so far; and how far, in units of the tree, a box may be to hold a better one.
+class TriangleTree::Best {
+ public:
+  /// `slack`: rounding in what boxes say about their distance. A box is skipped only if it is farther than the best
+  /// triangle by more, so that the best one is found from every beginning.
+  Best(const TriangleTree& tree, Vec3 p, double within, double slack)
+      : tree_(tree), p_(p), slack_(slack), limit_(square(tree.unit_ * within + slack)) {}
 
+  void consider(std::uint32_t triangle) {
+    const Vec3 offset = to_closest_point(tree_.triangles_[triangle], p_);
+    const double d2 = dot(offset, offset);
+    if (!(d2 < nearest_.squared_distance)) return;
+    nearest_ = {d2, offset, triangle};
+    limit_ = std::min(limit_, square(tree_.unit_ * std::sqrt(d2) + slack_));
+  }
+  [[nodiscard]] double limit() const { return limit_; }
+  [[nodiscard]] const Nearest& nearest() const { return nearest_; }
+
+ private:
+  const TriangleTree& tree_;
+  Vec3 p_;
+  double slack_, limit_;
+  Nearest nearest_;
+};
+
+/// `q`: the point as squared_distances takes it.
+template <class Query>
+void TriangleTree::search(const Query& q, Best& best) const {
   Stack<Candidate> stack;
   stack.push({0, 0});
   while (!stack.empty()) {
     const Candidate next = stack.pop();
-    if (next.squared_distance > limit) continue;
+    if (next.squared_distance > best.limit()) continue;
     if ((next.child & Node::leaf) != 0) {
-      const std::uint32_t first = next.child & Node::first_mask;
-      const std::uint32_t last = first + ((next.child & ~Node::leaf) >> Node::count_shift);
-      for (std::uint32_t i = first; i <= last; ++i) try_triangle(i);
+      for (const std::uint32_t t : triangles_of(next.child)) best.consider(t);
       continue;
     }
     const Node& node = nodes_[next.child];
-    const std::array<double, 4> distances = squared_distances(node, q);
+    const auto distances = squared_distances(node, q);
     std::array<Candidate, 4> children;
     std::size_t count = 0;
     for (std::size_t i = 0; i < 4; ++i) {
-      if (!(distances[i] <= limit)) continue;
+      if (!(distances[i] <= best.limit())) continue;
       std::size_t at = count++;
       for (; at > 0 && children[at - 1].squared_distance < distances[i]; --at) children[at] = children[at - 1];
       children[at] = {distances[i], node.child[i]};
     }
     for (std::size_t i = 0; i < count; ++i) stack.push(children[i]);
   }
-  return best;
+}
+
+TriangleTree::Nearest TriangleTree::nearest(Vec3 p, std::uint32_t hint, double within) const {
+  const Vec3 q = to_unit(p);
+  const bool far = size_of(q) > 100;
+  Best best(*this, p, within, (far ? 1e-14 : 5e-7) * (size_of(q) + 2));
+  if (hint < triangles_.size()) best.consider(hint);
+  if (far)
+    search(q, best);
+  else
+    search(to_floats(q), best);
+  return best.nearest();
 }
 
 Winding TriangleTree::winding(Vec3 p) const {
   Winding out;
   const Vec3 q = to_unit(p);
-  // Outward rounding of the boxes is a thousand times this.
-  const double slack = 1e-15 * (std::abs(q.x) + std::abs(q.y) + std::abs(q.z) + 2);
+  const std::array<float, 3> f = to_floats(q);
+  const double slack = 2e-7 * (size_of(q) + 2);  // of rounding to floats
+  // A closed surface is left as often on one side as it is entered on the other: the side with less of it is quicker.
+  const int direction = q.x < 0 ? -1 : 1;
   Stack<std::uint32_t> stack;
   stack.push(0);
   while (!stack.empty()) {
     const std::uint32_t next = stack.pop();
-    if ((next & Node::leaf) == 0) {
-      const Node& node = nodes_[next];
-      for (std::size_t i = 0; i < 4; ++i) {
-        const bool met = q.x <= node.high[0][i] + slack && q.y >= node.low[1][i] - slack &&
-                         q.y <= node.high[1][i] + slack && q.z >= node.low[2][i] - slack &&
-                         q.z <= node.high[2][i] + slack;
-        if (met) stack.push(node.child[i]);
-      }
+    if ((next & Node::leaf) != 0) {
+      for (const std::uint32_t t : triangles_of(next)) meet(triangles_[t], p, direction, out);
       continue;
     }
-    const std::uint32_t first = next & Node::first_mask;
-    const std::uint32_t last = first + ((next & ~Node::leaf) >> Node::count_shift);
-    for (std::uint32_t i = first; i <= last; ++i) {
-      const Triangle& t = triangles_[i];
-      const RayView view = view_along_x(t, p.y, p.z);
-      const int side = view.crossing != 0 ? side_sign(t, p) : 0;
-      if (view.crossing * side < 0) out.number += view.crossing;  // beyond p
-      const bool may_touch = view.touches || (view.crossing != 0 && side == 0);
-      if (may_touch && is_on(t, p)) out.on_surface = true;
+    const Node& node = nodes_[next];
+    const std::array<float, 4> ahead = ray_distances(node, f, direction);
+    for (std::size_t i = 0; i < 4; ++i) {
+      if (ahead[i] <= slack) stack.push(node.child[i]);
     }
   }
   return out;

@@ -43,8 +43,8 @@ class TriangleTree {
   /// by `stop`, the tree must not be asked.
   TriangleTree(std::vector<Triangle> triangles, const Box3& box, StopPoll& stop);
 
-  /// `hint`: a triangle that may be near, to begin with.
-  [[nodiscard]] Nearest nearest(Vec3 p, std::uint32_t hint = no_triangle) const;
+  /// `hint`: a triangle that may be near, to begin with. Triangles farther than `within` may be overlooked.
+  [[nodiscard]] Nearest nearest(Vec3 p, std::uint32_t hint = no_triangle, double within = HUGE_VAL) const;
   [[nodiscard]] Winding winding(Vec3 p) const;
 
   [[nodiscard]] std::span<const Triangle> triangles() const { return triangles_; }
@@ -52,6 +52,9 @@ class TriangleTree {
   [[nodiscard]] const Box3& box() const { return box_; }
 
  private:
+  class Best;
+  template <class Query>
+  void search(const Query& q, Best& best) const;
   [[nodiscard]] Vec3 to_unit(Vec3 p) const { return unit_ * (p - middle_); }
 
   std::vector<Triangle> triangles_;
