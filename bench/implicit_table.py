@@ -15,6 +15,7 @@ import math
 import os
 import pathlib
 import random
+import re
 import statistics
 import struct
 import subprocess
@@ -24,15 +25,17 @@ import time
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 BINARIES = ROOT / "build/release/bin"
+TRIANGLES = re.compile(r'"triangles": (\d+)|(\d+) triangles')
+READING = re.compile(r"([\d.]+) s reading")
 GYROID = "cos(2*pi*x)*sin(2*pi*y) + cos(2*pi*y)*sin(2*pi*z) + cos(2*pi*z)*sin(2*pi*x)"
 HIERARCHY = "ball scale 5 tpms.p scale 4 tpms.d scale 3.75 tpms.gyroid scale 1.25 intersection intersection intersection".split()
 
 
 def run(command):
-    """What one process costs, and what it prints as JSON."""
+    """What one process costs, and how many triangles it says it wrote."""
     read, write = os.pipe()
     begin = time.monotonic()
-    job = subprocess.Popen([str(c) for c in command], stdout=write, stderr=subprocess.DEVNULL)
+    job = subprocess.Popen([str(c) for c in command], stdout=write, stderr=write)
     os.close(write)
     with os.fdopen(read) as pipe:
         printed = pipe.read()
@@ -42,7 +45,8 @@ def run(command):
     if job.returncode != 0:
         sys.exit(f"{' '.join(map(str, command))}: exit code {job.returncode}")
     return {"user": usage.ru_utime, "cpu": usage.ru_utime + usage.ru_stime, "wall": wall, "peak": usage.ru_maxrss / 1024,
-            **json.loads(printed)}
+            "triangles": int("".join(TRIANGLES.search(printed).groups(""))),
+            "reading": float(READING.search(printed).group(1)) if READING.search(printed) else 0}
 
 
 def gyroid_error(ply, samples):
@@ -106,7 +110,7 @@ def against_peers(samples, pairs, out):
     for threads in (1, 2):
         commands[f"meso, {threads} thread{'s' * (threads > 1)}"] = [
             BINARIES / "meso", "sdf", "expression", GYROID, "-s", f"{samples},{samples},{samples}", "-b", "-1,-1,-1,1,1,1",
-            "-o", out, "--json", "--jobs", threads]
+            "-o", out, "--jobs", threads]
         for title, peer in (("VTK FlyingEdges", "vtk_flying_edges"), ("OpenVDB", "openvdb")):
             binary = BINARIES / f"meso_bench_peer_{peer}"
             if binary.exists():
@@ -121,7 +125,7 @@ def against_peers(samples, pairs, out):
 
 def ours_alone(pairs, out, folder):
     head(f"meso sdf alone, 1 thread; medians of {pairs}")
-    flags = ["-o", out, "--json", "--jobs", 1]
+    flags = ["-o", out, "--jobs", 1]
     box = lambda half: ["-b", ",".join([f"-{half}"] * 3 + [f"{half}"] * 3)]
     meso = [BINARIES / "meso", "sdf"]
     mesh = folder / "torus.ply"
@@ -135,7 +139,7 @@ def ours_alone(pairs, out, folder):
     for name, done in runs.items():
         row(name, done)
     loading = runs["1 million triangles ∩ gyroid, 200³"]
-    print(f"\nOf the mesh's row, reading the file took {statistics.median(r['seconds']['read'] for r in loading):.2f} s wall.")
+    print(f"\nOf the mesh's row, reading the file took {median(loading, 'reading'):.2f} s wall.")
 
 
 def write_torus(path, around, across):
@@ -161,8 +165,8 @@ def write_torus(path, around, across):
 
 def kernels():
     binary = BINARIES / "meso_bench_implicit"
-    report = subprocess.run([binary, "--benchmark_format=json"], stdout=subprocess.PIPE, check=True).stdout
-    times = {b["name"]: b["cpu_time"] for b in json.loads(report)["benchmarks"]}
+    report = subprocess.run([binary, "--benchmark_format=json", "--benchmark_min_time=0.2"], stdout=subprocess.PIPE, check=True).stdout
+    times = {b["name"]: b["ns_per_sample"] for b in json.loads(report)["benchmarks"]}
     print("\nFilling, one thread, CPU nanoseconds per sample in rows of 800 (meso_bench_implicit)\n")
     print("| expression | meso | muParser's bulk mode | ratio |\n|---|---:|---:|---:|")
     for name, ours in times.items():

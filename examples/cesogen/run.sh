@@ -95,3 +95,41 @@ q-star 0.57900 0.15800
 c-g 0.53450 0.06900
 slotted-p 0.50946 0.06986
 TABLE
+
+# Solids of files: two meshes each filled with its own surface, joined (the tree of figure 1).
+make mesh1.ply 4.188790 2e-3 ball
+mesh1=$volume
+make mesh2.ply 8 2e-3 box move 3,0,0 -b 1.9,-1.1,-1.1,4.1,1.1,1.1
+mesh2=$volume
+make tree.ply "$(awk "BEGIN { print ($mesh1 + $mesh2) / 2 }")" 1e-2 \
+  tpms.gyroid scale 0.5 file mesh1.ply intersection tpms.p scale 0.5 file mesh2.ply intersection union
+
+# Figure 6: a ball of cells of cells of cells; the volume is that of a quasi-Monte-Carlo count.
+make hierarchy.ply 55.8945 2e-2 -b -4,-4,-4,4,4,4 -s 130^3 ball scale 5 tpms.p scale 4 tpms.d scale 3.75 \
+  tpms.gyroid scale 1.25 intersection intersection intersection
+
+# Figure 10: half a ball of gyroid, then through files and back.
+box=(-b -4,-4,-4,4,4,4 -s 100^3)
+make trip0.ply 134.041287 2e-3 "${box[@]}" ball scale 4 tpms.gyroid scale 4 intersection
+first=$volume
+for trip in 1 2 3; do
+  make "trip$trip.ply" "$first" 2e-2 "${box[@]}" file "trip$((trip - 1)).ply"
+done
+
+# Two objects of revolution, filled: half of them in the limit of small cells.
+make baluster.obj 0.0213388 5e-3 -s 120^3 @baluster.txt
+baluster=$volume
+make baluster-neovius.ply "$(awk "BEGIN { print $baluster / 2 }")" 2e-2 -s 80^3 tpms.neovius scale .065 file baluster.obj intersection
+make baluster-fine.ply "$(awk "BEGIN { print $baluster / 2 }")" 2e-2 -s 120^3 tpms.neovius scale .03 file baluster.obj intersection
+make acorn.obj 0.00019985 5e-3 -s 100^3 @acorn.txt
+acorn=$volume
+make acorn-octo.ply "$(awk "BEGIN { print $acorn * .47059 }")" 2e-2 -s 80^3 tpms.octo scale .009 file acorn.obj intersection
+make acorn-fine.ply "$(awk "BEGIN { print $acorn * .47059 }")" 2e-2 -s 120^3 tpms.octo scale .003 file acorn.obj intersection
+
+# The optima of table 3.
+make optimum-gyroid.ply 4.0943 1e-2 -s 40^3 tpms.gyroid offset .037 scale 1.3
+make optimum-iwp.ply 4.3130 1e-2 -s 40^3 tpms.iwp offset .52 scale .50
+make optimum-frd.ply 4.5204 1e-2 -s 40^3 tpms.frd offset .56 scale 1.1
+
+echo "$runs runs, $failures failures"
+((failures == 0))

@@ -21,6 +21,14 @@ constexpr Format formats[] = {
     {".step", "STEP AP214 (also .stp)", true, true, "exact; imported by documents, written by convert"},
     {".brep", "OpenCASCADE B-rep", false, true, "exact"},
     {".stl", "STL, binary or --ascii", true, true, "triangles; imported by documents as a faceted solid"},
+#elif defined(MESO_CLI_IMPLICIT)
+    {".stl", "STL, binary or --ascii", true, true, "triangles, read and written by sdf"},
+#endif
+#ifdef MESO_CLI_IMPLICIT
+    {".ply", "PLY, binary", true, true, "triangles, read and written by sdf"},
+    {".obj", "Wavefront OBJ", true, true, "triangles, read and written by sdf"},
+    {".off", "Object File Format", true, true, "triangles, read and written by sdf"},
+    {".vtk", "legacy VTK polygons", false, true, "triangles, written by sdf"},
 #endif
 #ifdef MESO_CLI_EVAL
     {".csv", "placed cells", false, true, "written by eval"},

@@ -112,6 +112,7 @@ void add_sdf(CLI::App& app) { app.add_subcommand("sdf", description)->prefix_com
 
 int sdf_verb(Run& run, const std::vector<std::string>& words) {
   CLI::App flags;
+  flags.set_help_flag();  // -h is a word
   operations::SdfOptions options;
   add_flags(flags, run, options);
   const std::vector<sdf::CallerFlag> ours = caller_flags(flags);

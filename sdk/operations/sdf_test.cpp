@@ -118,7 +118,7 @@ TEST_F(Sdf, Hourglass) {
 TEST_F(Sdf, HalfABallOfGyroid) {
   // The gyroid is odd under inversion, so that it takes exactly half of a ball.
   const MeshMeasures m = measure("-b -4,-4,-4,4,4,4 -s 100^3 ball scale 4 tpms.gyroid scale 4 intersection");
-  EXPECT_NEAR(m.volume, 128 * pi / 3, 0.2);
+  EXPECT_NEAR(m.volume, 128 * pi / 3, 0.005 * 128 * pi / 3);
 }
 
 TEST_F(Sdf, GyroidClosesAtTheBox) {
