@@ -141,6 +141,9 @@ Sums gather(std::vector<Triangle>& out, const std::vector<Placed>& order, const 
       Blocks(0, order.size(), grain), Sums{},
       [&](const Blocks& range, Sums s) {
         for (std::size_t i = range.begin(); i != range.end(); ++i) {
+          if (i + 2 * prefetch_distance < order.size())
+            __builtin_prefetch(mesh.triangles.data() + order[i + 2 * prefetch_distance].triangle());
+          if (i + prefetch_distance < order.size()) prefetch_points(mesh, order[i + prefetch_distance].triangle());
           std::array<std::uint32_t, 3> corners = mesh.triangles[order[i].triangle()];
           if (!turned.empty() && turned[i]) std::swap(corners[1], corners[2]);
           Triangle& t = out[i];

@@ -59,6 +59,8 @@ std::vector<Placed> spatial_order(const TriangleMesh& mesh, const Box3& box) {
   std::vector<Placed> order(mesh.triangles.size()), other(order.size());
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, order.size(), 1 << 14), [&](const auto& range) {
     for (std::size_t i = range.begin(); i != range.end(); ++i) {
+      if (i + prefetch_distance < order.size())
+        prefetch_points(mesh, static_cast<std::uint32_t>(i + prefetch_distance));
       const auto& [a, b, c] = mesh.triangles[i];
       order[i] = {curve.place(mesh.points[a], mesh.points[b], mesh.points[c]), i};
     }

@@ -23,6 +23,12 @@ class Placed {
   std::uint64_t bits_;
 };
 
+/// Triangles may refer to points all over the memory; this asks for those of a later one in time.
+inline void prefetch_points(const TriangleMesh& mesh, std::uint32_t triangle) {
+  for (const std::uint32_t p : mesh.triangles[triangle]) __builtin_prefetch(mesh.points.data() + p);
+}
+constexpr std::size_t prefetch_distance = 12;
+
 /// Sorted by place, equal ones by number. `box` holds all points. REQUIRES: at most most_triangles.
 [[nodiscard]] std::vector<Placed> spatial_order(const TriangleMesh& mesh, const Box3& box);
 

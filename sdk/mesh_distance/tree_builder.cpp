@@ -8,7 +8,7 @@
 namespace meso::implicit {
 namespace {
 
-constexpr std::size_t bin_count = 16;
+constexpr std::size_t most_bins = 16;
 constexpr std::uint32_t leaf_triangles = 4;
 constexpr std::size_t parallel_leaves = 4096;
 constexpr std::uint32_t leaf_block = 1 << 14;  // triangles whose leaves are made by one thread
@@ -91,23 +91,24 @@ std::size_t TreeBuilder::part(Range leaves, std::size_t depth) {
   for (std::size_t i = 1; i < 3; ++i) {
     if (high[i] - low[i] > high[axis] - low[axis]) axis = i;
   }
-  const float scale = bin_count / (high[axis] - low[axis]);
+  const std::size_t bins = std::min(most_bins, leaves.size());
+  const float scale = static_cast<float>(bins) / (high[axis] - low[axis]);
   if (depth > max_depth / 2 || !(scale < HUGE_VALF)) return leaves.size() / 2;
   const auto bin_of = [&](const Leaf& leaf) {
-    return std::min(bin_count - 1, static_cast<std::size_t>((leaf.middle2(axis) - low[axis]) * scale));
+    return std::min(bins - 1, static_cast<std::size_t>((leaf.middle2(axis) - low[axis]) * scale));
   };
-  std::array<Box, bin_count> boxes;
-  std::array<std::uint32_t, bin_count> counts{};
+  std::array<Box, most_bins> boxes;
+  std::array<std::uint32_t, most_bins> counts{};
   for (const Leaf& leaf : leaves) {
     const std::size_t b = bin_of(leaf);
     boxes[b].extend(leaf.box);
     ++counts[b];
   }
   // Cost of parting before bin b: area times number on both sides.
-  std::array<float, bin_count> before{};
+  std::array<float, most_bins> before{};
   Box box;
   float number = 0;
-  for (std::size_t b = 0; b + 1 < bin_count; ++b) {
+  for (std::size_t b = 0; b + 1 < bins; ++b) {
     box.extend(boxes[b]);
     number += static_cast<float>(counts[b]);
     before[b + 1] = number > 0 ? number * box.half_area() : 0;
@@ -116,7 +117,7 @@ std::size_t TreeBuilder::part(Range leaves, std::size_t depth) {
   number = 0;
   float least = HUGE_VALF;
   std::size_t best = 0;
-  for (std::size_t b = bin_count - 1; b > 0; --b) {
+  for (std::size_t b = bins - 1; b > 0; --b) {
     box.extend(boxes[b]);
     number += static_cast<float>(counts[b]);
     const float cost = before[b] + (number > 0 ? number * box.half_area() : 0);
@@ -133,11 +134,14 @@ void TreeBuilder::build_node(Range leaves, std::size_t number, std::size_t depth
   if (leaves.size() > parallel_leaves && stop_()) return;
   std::array<Range, 4> parts{leaves};
   std::size_t count = 1;
-  while (count < 4) {
+  for (; leaves.size() <= 4 && count < leaves.size(); ++count) {
+    parts[count] = parts[count - 1].subspan(1);
+    parts[count - 1] = parts[count - 1].first(1);
+  }
+  while (leaves.size() > 4 && count < 4) {
     const auto largest = std::max_element(parts.begin(), parts.begin() + count,
                                           [](const Range& a, const Range& b) { return a.size() < b.size(); });
-    if (largest->size() < 2) break;
-    const Range whole = *largest;
+    const Range whole = *largest;  // more than one leaf: five or more are in fewer than four parts
     const std::size_t front = part(whole, depth);
     *largest = whole.first(front);
     parts[count++] = whole.subspan(front);
