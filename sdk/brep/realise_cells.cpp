@@ -2,7 +2,6 @@
 #include "realise_cells.hpp"
 
 #include <algorithm>
-#include <cstdint>
 #include <map>
 
 #include "boolean.hpp"
@@ -12,21 +11,23 @@
 namespace meso::brep {
 namespace {
 
-Box3 placed_box(const Box3& box, const Affine& placement) {
+/// Around the placed prototype: what the box and the ball around it agree on.
+Box3 placed_box(const Prototype& prototype, const Affine& placement) {
   Box3 out;
+  if (prototype.box.empty()) return out;
+  const Box3& box = prototype.box;
   for (int i = 0; i < 8; ++i)
     out.extend(placement *
                Vec3{(i & 1 ? box.max : box.min).x, (i & 2 ? box.max : box.min).y, (i & 4 ? box.max : box.min).z});
+  const Vec3 centre = placement * prototype.centre;
+  for (std::size_t i = 0; i < 3; ++i) {
+    out.min[i] = std::max(out.min[i], centre[i] - prototype.radius);
+    out.max[i] = std::min(out.max[i], centre[i] + prototype.radius);
+  }
   return out;
 }
 
 bool is_rigid(const Affine& map) { return is_similarity(map) && std::fabs(determinant(map.linear) - 1) < 1e-12; }
-
-/// Inverse of a rigid map.
-Affine inverse(const Affine& rigid) {
-  const Mat3 back = transposed(rigid.linear);
-  return {back, -(back * rigid.translation)};
-}
 
 using Key = std::vector<double>;
 
@@ -72,7 +73,7 @@ Placed canonical(eval::VolumeElementShape element, ElementId source) {
     key.push_back(rounded(element.from[i]));
     key.push_back(rounded(element.to[i]));
   }
-  const Affine system_from_world = inverse(world);
+  const Affine system_from_world = inverse_of_rigid(world);
   return {std::move(key), {}, {std::move(element), source}, world * move * system_from_world};
 }
 
@@ -98,7 +99,7 @@ class Collector {
     const std::optional<std::size_t> prototype = place(cell);
     failed_ = !prototype;
     if (!prototype) return false;
-    result_.cells.push_back({*prototype, placement_, placed_box(result_.prototypes[*prototype].box, placement_)});
+    result_.cells.push_back({*prototype, placement_, placed_box(result_.prototypes[*prototype], placement_)});
     return true;
   }
 
@@ -151,13 +152,29 @@ class Collector {
     }
     prototype.mesh = coarse_mesh(prototype.solids);
     for (const TopoDS_Shape& solid : prototype.solids) {
-      const CoarseMesh mesh = coarse_mesh({solid});
+      const CoarseMesh mesh = prototype.solids.size() == 1 ? prototype.mesh : coarse_mesh({solid});
       if (!mesh.points.empty()) prototype.anchors.push_back(mesh.points.front());
     }
+    enclose(prototype);
     const std::size_t index = result_.prototypes.size();
     result_.prototypes.push_back(std::move(prototype));
     known_.emplace(key, index);
     return index;
+  }
+
+  /// Box and ball around all points that the triangles can be wrong about.
+  static void enclose(Prototype& prototype) {
+    const CoarseMesh& mesh = prototype.mesh;
+    Box3 points;
+    for (const Vec3 p : mesh.points) points.extend(p);
+    if (points.empty()) return;
+    for (std::size_t i = 0; i < 3; ++i) {
+      prototype.box.min[i] = std::max(prototype.box.min[i], points.min[i] - mesh.error);
+      prototype.box.max[i] = std::min(prototype.box.max[i], points.max[i] + mesh.error);
+    }
+    prototype.centre = (points.min + points.max) / 2;
+    for (const Vec3 p : mesh.points)
+      prototype.radius = std::max(prototype.radius, norm(p - prototype.centre) + mesh.error);
   }
 
   const eval::CellStream& cells_;
@@ -167,72 +184,6 @@ class Collector {
   std::map<Key, std::size_t> known_;
   Affine placement_;
   bool failed_ = false;
-};
-
-bool boxes_near(const Box3& a, const Box3& b) {
-  const Vec3 d{clear_distance, clear_distance, clear_distance};
-  return Box3{a.min - d, a.max + d}.intersects(b);
-}
-
-/// Pairs of cells stand in few different ways to each other: each is decided once.
-class Neighbours {
- public:
-  explicit Neighbours(const CellSolids& cells) : cells_(cells) {}
-
-  bool touch(const CellSolid& a, const CellSolid& b) {
-    const Affine a_from_b = inverse(a.placement) * b.placement;
-    std::vector<std::int64_t> key{static_cast<std::int64_t>(a.prototype), static_cast<std::int64_t>(b.prototype)};
-    for (const double m : a_from_b.linear.m) key.push_back(std::llround(m * 1e8));
-    for (std::size_t i = 0; i < 3; ++i) key.push_back(std::llround(a_from_b.translation[i] * 1e7));
-    const auto [known, fresh] = known_.try_emplace(std::move(key), false);
-    if (fresh) known->second = decide(cells_.prototypes[a.prototype], cells_.prototypes[b.prototype], a_from_b);
-    return known->second;
-  }
-
- private:
-  static bool decide(const Prototype& a, const Prototype& b, const Affine& a_from_b) {
-    if (holds_a_solid(a, b, a_from_b) || holds_a_solid(b, a, inverse(a_from_b))) return true;
-    if (proven_apart(a.surfaces, a.mesh, b.mesh.placed(a_from_b))) return false;
-    if (proven_apart(b.surfaces, b.mesh, a.mesh.placed(inverse(a_from_b)))) return false;
-    if (proven_to_touch(a, b.mesh, a_from_b) || proven_to_touch(b, a.mesh, inverse(a_from_b))) return true;
-    for (const TopoDS_Shape& solid : a.solids)
-      for (const TopoDS_Shape& other : b.solids)
-        if (exact_distance(solid, mapped(other, a_from_b)) <= clear_distance) return true;
-    return false;
-  }
-
-  /// A solid that lies within another keeps clear of its surface, and yet the two overlap.
-  static bool holds_a_solid(const Prototype& a, const Prototype& b, const Affine& a_from_b) {
-    return std::ranges::any_of(b.anchors, [&](Vec3 anchor) {
-      const Vec3 p = a_from_b * anchor;
-      if (!a.box.intersects({p, p})) return false;
-      return std::ranges::any_of(a.solids, [&](const TopoDS_Shape& solid) {
-        BRepClass3d_SolidClassifier classifier(solid, to_pnt(p), clear_distance);
-        return classifier.State() == TopAbs_IN;
-      });
-    });
-  }
-
-  /// A corner of the mesh, which lies on its body, is in or on the other: takes milliseconds, the distance a tenth of a
-  /// second.
-  static bool proven_to_touch(const Prototype& a, const CoarseMesh& mesh, const Affine& a_from_mesh) {
-    std::vector<Vec3> near;
-    for (const Vec3 point : mesh.points) {
-      const Vec3 p = a_from_mesh * point;
-      if (boxes_near(a.box, {p, p})) near.push_back(p);
-    }
-    if (near.empty()) return false;
-    return std::ranges::any_of(a.solids, [&](const TopoDS_Shape& solid) {
-      BRepClass3d_SolidClassifier classifier(solid);
-      return std::ranges::any_of(near, [&](Vec3 p) {
-        classifier.Perform(to_pnt(p), clear_distance);
-        return classifier.State() == TopAbs_IN || classifier.State() == TopAbs_ON;
-      });
-    });
-  }
-
-  const CellSolids& cells_;
-  std::map<std::vector<std::int64_t>, bool> known_;
 };
 
 }  // namespace
@@ -265,26 +216,6 @@ std::optional<CellSolids> cell_solids_at(const eval::CellStream& cells, std::spa
   for (const std::uint64_t ordinal : ordinals)
     if (!collector.collect(ordinal, ordinal + 1)) return {};
   return std::move(collector).take();
-}
-
-std::vector<bool> touching_cells(const CellSolids& cells) {
-  std::vector<bool> touching(cells.cells.size(), false);
-  // A sweep along x: only cells whose x-intervals meet are compared.
-  std::vector<std::size_t> order(cells.cells.size());
-  for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
-  std::ranges::stable_sort(order, {}, [&](std::size_t i) { return cells.cells[i].box.min.x; });
-  Neighbours neighbours(cells);
-  std::vector<std::size_t> open;
-  for (const std::size_t i : order) {
-    const Box3& box = cells.cells[i].box;
-    std::erase_if(open, [&](std::size_t k) { return cells.cells[k].box.max.x < box.min.x - clear_distance; });
-    for (const std::size_t k : open) {
-      if (!boxes_near(cells.cells[k].box, box) || (touching[i] && touching[k])) continue;
-      if (neighbours.touch(cells.cells[std::min(i, k)], cells.cells[std::max(i, k)])) touching[i] = touching[k] = true;
-    }
-    open.push_back(i);
-  }
-  return touching;
 }
 
 }  // namespace meso::brep

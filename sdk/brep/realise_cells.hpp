@@ -14,6 +14,8 @@ namespace meso::brep {
 struct Prototype {
   Solids solids;
   Box3 box;
+  Vec3 centre;  ///< of a ball around it
+  double radius = 0;
   CoarseMesh mesh;
   std::vector<Vec3> anchors;  ///< one point of each solid's surface
   std::vector<CarrierSurface> surfaces;
@@ -46,7 +48,10 @@ enum class CellPart { body, region };
                                                        std::span<const std::uint64_t> ordinals, CellPart what,
                                                        const SolidContext& context);
 
-/// For each cell, whether it touches or overlaps another. May throw Standard_Failure.
-[[nodiscard]] std::vector<bool> touching_cells(const CellSolids& cells);
+/// world_from_source of source_from_world, both rigid.
+[[nodiscard]] inline Affine inverse_of_rigid(const Affine& rigid) {
+  const Mat3 back = transposed(rigid.linear);
+  return {back, -(back * rigid.translation)};
+}
 
 }  // namespace meso::brep

@@ -4,7 +4,6 @@
 #include <BRepExtrema_DistShapeShape.hxx>
 #include <algorithm>
 
-#include "boolean.hpp"
 #include "face_moments.hpp"
 
 namespace meso::brep {
@@ -16,13 +15,29 @@ double distance_to_box(const Box3& box, Vec3 p) {
   return norm(d);
 }
 
-/// Halves a triangle along its edges until the surface is provably away from each piece.
-bool is_away(const CarrierSurface& surface, const std::array<Vec3, 3>& t, double margin, int side, int depth) {
+using Corners = std::array<Vec3, 3>;
+
+/// More than `margin` away all over the triangle? Empty if that is not decided without a closer look.
+std::optional<bool> is_away_at_once(const CarrierSurface& surface, const Corners& t, double margin, int side) {
   const Vec3 centre = (t[0] + t[1] + t[2]) / 3;
-  const double reach = std::max({norm(t[0] - centre), norm(t[1] - centre), norm(t[2] - centre)});
-  const double distance = side * surface.signed_distance(centre);
-  if (distance > reach + margin) return true;
-  if (distance <= margin || depth == 0) return false;
+  const double at_centre = surface.signed_distance(centre);
+  if (side * at_centre <= margin) return false;
+  if (!surface.is_convex_on(t)) {
+    const double reach = std::max({norm(t[0] - centre), norm(t[1] - centre), norm(t[2] - centre)});
+    return side * at_centre > reach + margin ? std::optional(true) : std::nullopt;
+  }
+  const auto corner_away = [&](Vec3 p) { return side * surface.signed_distance(p) > margin; };
+  if (!std::ranges::all_of(t, corner_away)) return false;
+  if (side < 0) return true;                    // a convex function is largest in a corner
+  const Vec3 slope = surface.gradient(centre);  // and nowhere below its tangent
+  const auto tangent_away = [&](Vec3 p) { return at_centre + dot(slope, p - centre) > margin; };
+  return std::ranges::all_of(t, tangent_away) ? std::optional(true) : std::nullopt;
+}
+
+/// Halves a triangle along its edges until the surface is provably away from each piece.
+bool is_away(const CarrierSurface& surface, const Corners& t, double margin, int side, int depth) {
+  if (const auto answer = is_away_at_once(surface, t, margin, side)) return *answer;
+  if (depth == 0) return false;
   const Vec3 ab = (t[0] + t[1]) / 2, bc = (t[1] + t[2]) / 2, ca = (t[2] + t[0]) / 2;
   return is_away(surface, {t[0], ab, ca}, margin, side, depth - 1) &&
          is_away(surface, {ab, t[1], bc}, margin, side, depth - 1) &&
@@ -37,9 +52,15 @@ bool is_away(const CarrierSurface& surface, const CoarseMesh& mesh, double margi
   });
 }
 
+Box3 quick_box(const TopoDS_Shape& shape) {
+  Bnd_Box bounds;
+  BRepBndLib::Add(shape, bounds, false);
+  return {to_vec(bounds.CornerMin()), to_vec(bounds.CornerMax())};
+}
+
 }  // namespace
 
-CarrierSurface::CarrierSurface(const TopoDS_Face& face) : face_(face), box_(face_box(face)) {
+CarrierSurface::CarrierSurface(const TopoDS_Face& face) : face_(face) {
   const BRepAdaptor_Surface surface(face, false);
   type_ = surface.GetType();
   const auto place = [&](const gp_Ax3& frame) {
@@ -72,6 +93,8 @@ CarrierSurface::CarrierSurface(const TopoDS_Face& face) : face_(face), box_(face
     default:
       type_ = GeomAbs_OtherSurface;
   }
+  // The tight box of a B-spline is an optimisation problem; that of its poles contains it, too.
+  box_ = type_ == GeomAbs_OtherSurface ? quick_box(face) : face_box(face);
 }
 
 double CarrierSurface::signed_distance(Vec3 p) const {
@@ -93,7 +116,28 @@ double CarrierSurface::signed_distance(Vec3 p) const {
   }
 }
 
-bool CarrierSurface::is_convex_inside() const {
+Vec3 CarrierSurface::gradient(Vec3 p) const {
+  const auto unit = [](Vec3 v) { return norm(v) > 0 ? v / norm(v) : Vec3{}; };
+  const Vec3 d = p - origin_;
+  const double along = dot(d, axis_);
+  const Vec3 outwards = unit(d - along * axis_);
+  switch (type_) {
+    case GeomAbs_Plane:
+      return axis_;
+    case GeomAbs_Cylinder:
+      return outwards;
+    case GeomAbs_Cone:
+      return cosine_ * outwards - std::copysign(sine_, along) * axis_;
+    default:
+      return unit(d);
+  }
+}
+
+bool CarrierSurface::is_convex_on(const std::array<Vec3, 3>& points) const {
+  if (type_ == GeomAbs_Cone) {  // one nappe is, both are not
+    const auto is_above = [this](Vec3 p) { return dot(p - origin_, axis_) > 0; };
+    return is_above(points[0]) == is_above(points[1]) && is_above(points[1]) == is_above(points[2]);
+  }
   return type_ == GeomAbs_Plane || type_ == GeomAbs_Cylinder || type_ == GeomAbs_Sphere;
 }
 
@@ -103,12 +147,12 @@ CoarseMesh CoarseMesh::placed(const Affine& placement) const {
   return mesh;
 }
 
-CoarseMesh coarse_mesh(const Solids& solids) {
+CoarseMesh coarse_mesh(const Solids& solids, double fineness) {
   CoarseMesh mesh;
   for (const TopoDS_Shape& solid : solids) {
     const TopoDS_Shape copy = BRepBuilderAPI_Copy(solid).Shape();  // the original may get a finer mesh later
-    const Box3 box = box_of(copy);
-    const double deflection = 0.01 * norm(box.max - box.min);
+    const Box3 box = quick_box(copy);
+    const double deflection = 0.01 * fineness * norm(box.max - box.min);
     mesh.error = std::max(mesh.error, 2 * deflection);  // the mesher's deflection is aimed at, not guaranteed
     BRepMesh_IncrementalMesh(copy, deflection, false, 0.3);
     for (TopExp_Explorer it(copy, TopAbs_FACE); it.More(); it.Next()) {
@@ -136,7 +180,6 @@ int proven_side(const CarrierSurface& surface, const CoarseMesh& mesh, double ga
   const bool corners_clear =
       std::ranges::all_of(mesh.points, [&](Vec3 p) { return side * surface.signed_distance(p) > margin; });
   if (!corners_clear) return 0;
-  if (surface.is_plane() || (side < 0 && surface.is_convex_inside())) return side;
   return is_away(surface, mesh, margin, side) ? side : 0;
 }
 

@@ -23,8 +23,10 @@ class CarrierSurface {
   /// At most the distance from the surface, with a sign that is constant on each side; at most the distance to the
   /// face's box where the surface has no formula. A change of p by d changes it by d at most.
   [[nodiscard]] double signed_distance(Vec3 p) const;
-  /// The set where signed_distance is below a bound is convex.
-  [[nodiscard]] bool is_convex_inside() const;
+  /// True if signed_distance is a convex function on the triangle of these points.
+  [[nodiscard]] bool is_convex_on(const std::array<Vec3, 3>& points) const;
+  /// Of signed_distance, where that is convex.
+  [[nodiscard]] Vec3 gradient(Vec3 p) const;
   [[nodiscard]] bool is_plane() const { return type_ == GeomAbs_Plane; }
 
  private:
@@ -43,7 +45,8 @@ struct CoarseMesh {
 
   [[nodiscard]] CoarseMesh placed(const Affine& placement) const;
 };
-[[nodiscard]] CoarseMesh coarse_mesh(const Solids& solids);
+/// `fineness` scales the error: a hundredth of the body's diagonal at 1.
+[[nodiscard]] CoarseMesh coarse_mesh(const Solids& solids, double fineness = 1);
 
 /// +1 or -1: all of the body lies on that side of the surface, farther than `gap`; 0: not proven.
 [[nodiscard]] int proven_side(const CarrierSurface& surface, const CoarseMesh& mesh, double gap);

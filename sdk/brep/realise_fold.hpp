@@ -20,6 +20,10 @@ struct FoldContext {
   const Apply& apply;
   double clearance = 0;
   std::size_t max_boolean_solids = 600;
+
+  [[nodiscard]] ElementId where() const { return apply.id_in_source; }
+  /// False, and LIMIT_BOOLEANS, if that many solids are too many to be joined.
+  [[nodiscard]] bool within_budget(std::size_t solids) const;
 };
 
 /// `body` (empty: nothing) op the cells of the pattern, boundary rule obeyed; counts added. Cells that keep clear of

@@ -1,50 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 // Documents to bodies: the way each is built, and its volume against the closed form.
-#include "meso/brep/realise.hpp"
-
-#include <gtest/gtest.h>
-
 #include <numbers>
 
-#include "meso/brep/audit.hpp"
-#include "meso/brep/measure.hpp"
-#include "meso/validate/validate.hpp"
-#include "meso/xml/read.hpp"
+#include "realise_fixture.hpp"
 
 namespace meso::brep {
 namespace {
 
 using std::numbers::pi;
 
-const std::string head = R"(<meso xmlns="urn:meso-format:1.0" version="1.0" unit="millimeter">)";
+class Realise : public RealiseTest {};
 
-class Realise : public ::testing::Test {
- protected:
-  std::optional<Realisation> realised(const std::string& sections, const RealiseOptions& options = {}) {
-    sink_ = DiagnosticSink();
-    auto read = read_document(head + sections + "</meso>", "test.meso", sink_);
-    if (!read) return {};
-    const auto checked = validate(std::move(read->document), std::move(read->source), ".", sink_);
-    if (!checked) return {};
-    const auto evaluation = eval::Evaluation::make(*checked, {}, sink_);
-    return evaluation ? realise_build(*evaluation, {}, options, sink_) : std::nullopt;
-  }
-  void TearDown() override {
-    if (HasFailure())
-      for (const Diagnostic& d : sink_.diagnostics()) std::puts(render(d).c_str());
-  }
-  Code first_code() const { return sink_.diagnostics().empty() ? Code{} : sink_.diagnostics().front().code; }
-
-  DiagnosticSink sink_;
-};
-
-std::string macrostructure(const std::string& csg) {
-  return "<macrostructures><macrostructure id=\"m\"><csg>" + csg + "</csg></macrostructure></macrostructures>";
-}
-std::string part(const std::string& apply, bool with_body = true) {
-  return std::string("<parts><part id=\"p\"") + (with_body ? " macrostructure=\"m\"" : "") + ">" + apply +
-         "</part></parts>";
-}
 /// A pattern "c" of balls of radius 1 on a grid along x, four millimetres apart.
 std::string balls(int count, double start, double spacing = 4) {
   return "<unitCells><unitCell id=\"u\"><box x=\"-1\" y=\"-1\" z=\"-1\" dx=\"2\" dy=\"2\" dz=\"2\"/>"
@@ -55,13 +21,6 @@ std::string balls(int count, double start, double spacing = 4) {
 }
 const std::string block = macrostructure(R"(<box x="0" y="-5" z="-5" dx="20" dy="10" dz="10"/>)");
 constexpr double ball = 4.0 / 3 * pi;
-
-void expect_body(const std::optional<Realisation>& made, const std::string& way, double volume) {
-  ASSERT_TRUE(made);
-  EXPECT_EQ(made->way, way);
-  EXPECT_NEAR(measure(made->body).volume / volume, 1, 1e-6);
-  EXPECT_TRUE(audit(made->body).clean());
-}
 
 TEST_F(Realise, MacrostructureAlone) { expect_body(realised(block + part("")), "direct", 2000); }
 

@@ -69,10 +69,14 @@ class TemplateBuilder {
   // The edges in order. On a forward face loops are counter-clockwise about du x dv; a reversed face turns them over.
   [[nodiscard]] std::vector<Coedge> to_loop(const TopoDS_Wire& wire, const TopoDS_Face& forward, bool reverse) const {
     std::vector<TopoDS_Edge> chain;
-    for (BRepTools_WireExplorer it(wire, forward); it.More(); it.Next()) chain.push_back(it.Current());
-    std::size_t count = 0;
     for (TopoDS_Iterator it(wire); it.More(); it.Next())
-      count += it.Value().Orientation() == TopAbs_FORWARD || it.Value().Orientation() == TopAbs_REVERSED;
+      if (it.Value().Orientation() == TopAbs_FORWARD || it.Value().Orientation() == TopAbs_REVERSED)
+        chain.push_back(TopoDS::Edge(it.Value()));
+    const std::size_t count = chain.size();
+    if (count > 1) {  // the explorer looks at the whole face, which may have a thousand circles
+      chain.clear();
+      for (BRepTools_WireExplorer it(wire, forward); it.More(); it.Next()) chain.push_back(it.Current());
+    }
     if (chain.size() != count)
       chain = reordered(wire, forward);  // the explorer stops where a vertex has several ways on
     std::vector<Coedge> loop;
