@@ -33,7 +33,6 @@ class Program::Assembler {
     std::vector<std::size_t> last_use(graph_.size(), 0);
     for (std::size_t s = 0; s < steps.size(); ++s)
       for (const Graph::Id operand : graph_.operands(steps[s])) last_use[read(operand)] = s;
-    last_use[root] = steps.size();
     for (std::size_t s = 0; s < steps.size(); ++s) {
       add_step(steps[s], externals);
       for (const Graph::Id operand : graph_.operands(steps[s]))
