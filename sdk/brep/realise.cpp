@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 
+#include "meso/brep/measure.hpp"
 #include "realise_fold.hpp"
 #include "realise_lattice.hpp"
 #include "realise_part.hpp"
@@ -23,6 +24,11 @@ struct Folded {
   Solids solids;
   std::optional<Body> body;
 };
+
+void keep_largest(Body& body) {
+  const auto volume = [](const Solid& solid) { return measure(Body{.solids = {solid}, .fragments = 0}).volume; };
+  body.solids = {*std::ranges::max_element(body.solids, {}, volume)};
+}
 
 class PartFold {
  public:
@@ -61,7 +67,8 @@ class PartFold {
       const Pattern* pattern = evaluation_.find_pattern(apply.pattern->text);
       const auto cells = pattern != nullptr ? evaluation_.cells(*pattern, context_.sink) : std::nullopt;
       if (!cells) return false;
-      if (is_last && may_be_lattice(apply, state.solids) && try_lattice(state, *cells)) return true;
+      if (is_last && may_be_lattice(apply, state.solids) && try_lattice(state, *cells, apply, part.id.text))
+        return true;
       if (context_.sink.has_errors()) return false;
       made = apply_cells(state.solids, *cells, context, counts);
     } else if (apply.part) {
@@ -73,7 +80,7 @@ class PartFold {
     return settle_fragments(state.solids, before, context, part.id.text, counts);
   }
 
-  bool try_lattice(Folded& state, const eval::CellStream& cells) {
+  bool try_lattice(Folded& state, const eval::CellStream& cells, const Apply& apply, const std::string& part) {
     if (cells.size() > options_.run.max_cells) return false;
     auto lattice = lattice_part(state.solids, cells, fineness(options_), context_);
     if (!lattice) return false;
@@ -84,6 +91,14 @@ class PartFold {
     const std::size_t solids = lattice->body.solids.size(), whole = state.solids.size();
     lattice->body.fragments = whole == 0 || solids <= whole ? 0 : solids - whole;
     counts.fragments += lattice->body.fragments;
+    if (lattice->body.fragments > 0) {
+      const FragmentRule rule = apply.fragments.value_or(FragmentRule::keep);
+      if (rule == FragmentRule::drop) keep_largest(lattice->body);
+      if (rule == FragmentRule::error) {
+        context_.report(Code::geometry_fragments, apply.id_in_source, {part, std::to_string(lattice->body.fragments)});
+        return false;
+      }
+    }
     state.body = std::move(lattice->body);
     way = "lattice";
     return true;
@@ -165,7 +180,7 @@ std::optional<Solids> macrostructure_solids(const eval::Evaluation& evaluation, 
 bool may_be_lattice(const Apply& apply, const Solids& body) {
   return apply.operation == (body.empty() ? ApplyOperation::union_ : ApplyOperation::intersection) &&
          apply.boundary.value_or(BoundaryRule::clip) == BoundaryRule::clip &&
-         apply.fragments.value_or(FragmentRule::keep) == FragmentRule::keep;
+         (apply.fragments.value_or(FragmentRule::keep) == FragmentRule::keep || body.size() == 1);
 }
 
 const Part* chosen_part(const eval::Evaluation& evaluation, std::optional<std::string_view> part_id,

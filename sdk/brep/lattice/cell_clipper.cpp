@@ -8,6 +8,7 @@
 #include <map>
 
 #include "boolean.hpp"
+#include "face_moments.hpp"
 #include "meso/base/number.hpp"
 #include "point_within.hpp"
 #include "stop_watch.hpp"
@@ -71,9 +72,11 @@ CellClipper::CellClipper(const std::vector<TopoDS_Shape>& solids, const BodySurf
                          const RunOptions& run)
     : grid_(grid), run_(run) {
   for (const TopoDS_Shape& solid : solids) {
-    solids_.push_back(solid.IsNull() ? solid : BRepBuilderAPI_Copy(solid).Shape());
-    volumes_.push_back(solid.IsNull() ? 0 : volume_of(solid));
+    solids_.push_back(solids_of(solid.IsNull() ? solid : BRepBuilderAPI_Copy(solid).Shape()));
+    double& volume = volumes_.emplace_back(0);
+    for (const TopoDS_Shape& part : solids_.back()) volume += volume_of(part);
   }
+  shares_ = recent_;
   const TopoDS_Shape body = BRepBuilderAPI_Copy(surface.body()).Shape();
   for (TopExp_Explorer it(body, TopAbs_FACE); it.More(); it.Next()) faces_.push_back(TopoDS::Face(it.Current()));
   for (TopExp_Explorer it(body, TopAbs_SOLID); it.More(); it.Next()) body_.emplace_back(it.Current());
@@ -84,6 +87,22 @@ bool CellClipper::in_body(Vec3 p) {
     solid.Perform(to_pnt(p), Precision::Confusion());
     return solid.State() == TopAbs_IN;
   });
+}
+
+double CellClipper::share_of(const TopoDS_Face& face) {
+  const double sign = face.Orientation() == TopAbs_REVERSED ? -1 : 1;
+  for (const TopTools_DataMapOfShapeReal* known : {&shares_, &recent_})
+    if (const double* share = known->Seek(face)) return sign * *share;
+  const Vec3 m = face_moments(TopoDS::Face(face.Oriented(TopAbs_FORWARD))).volume_moment;
+  const double share = (m.x + m.y + m.z) / 3;
+  recent_.Bind(face, share);
+  return sign * share;
+}
+
+double CellClipper::volume_of(const TopoDS_Shape& piece) {
+  double volume = 0;
+  for (TopExp_Explorer it(piece, TopAbs_FACE); it.More(); it.Next()) volume += share_of(TopoDS::Face(it.Current()));
+  return volume;
 }
 
 ClippedCell CellClipper::clip(std::uint32_t kind, const Index3& cell, const std::vector<std::uint32_t>& faces) {
@@ -107,13 +126,13 @@ ClippedCell CellClipper::clip(std::uint32_t kind, const Index3& cell, const std:
 ClippedCell CellClipper::attempt(const Attempt& how, std::uint32_t kind, const Index3& cell,
                                  const std::vector<std::uint32_t>& faces) {
   using Left = ClippedCell::Left;
+  recent_.Clear();
   const Vec3 to_cell = how.shift - (grid_.origin(cell) - grid_.first.min);
-  const TopoDS_Shape& whole = solids_[kind];
   std::vector<TopoDS_Face> tools;
   for (const std::uint32_t face : faces) tools.push_back(TopoDS::Face(moved(faces_[face], to_cell)));
   const Handle(StopWatch) watch = new StopWatch(run_);
   BOPAlgo_Splitter splitter;
-  const Solids parts = solids_of(whole);
+  const Solids& parts = solids_[kind];
   for (const TopoDS_Shape& part : parts) splitter.AddArgument(part);
   for (const TopoDS_Face& tool : tools) splitter.AddTool(tool);
   splitter.SetNonDestructive(true);

@@ -9,6 +9,7 @@
 //
 // Thread rule: one for each thread; it works on copies of its own, because OpenCASCADE writes to the shapes it reads.
 
+#include <TopTools_DataMapOfShapeReal.hxx>
 #include <deque>
 #include <string>
 #include <vector>
@@ -43,8 +44,14 @@ class CellClipper {
   [[nodiscard]] ClippedCell attempt(const Attempt& how, std::uint32_t kind, const Index3& cell,
                                     const std::vector<std::uint32_t>& faces);
 
-  std::vector<TopoDS_Shape> solids_;
+  /// Its share of the volume of what it bounds.
+  [[nodiscard]] double share_of(const TopoDS_Face& face);
+  [[nodiscard]] double volume_of(const TopoDS_Shape& piece);
+
+  std::vector<std::vector<TopoDS_Shape>> solids_;  ///< per kind
   std::vector<double> volumes_;
+  TopTools_DataMapOfShapeReal shares_;  ///< of faces of `solids_`, taken forward: most are in many pieces, whole
+  TopTools_DataMapOfShapeReal recent_;  ///< of the faces of one attempt: a cap bounds two pieces
   std::vector<TopoDS_Face> faces_;
   std::deque<BRepClass3d_SolidClassifier> body_;  // they cannot be moved
   CellGrid grid_;

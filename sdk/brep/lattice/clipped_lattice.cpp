@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lattice/clipped_lattice.hpp"
 
-#include <atomic>
 #include <deque>
 #include <map>
-#include <thread>
 
 #include "boolean.hpp"
 #include "lattice/assembly.hpp"
 #include "lattice/cell_clipper.hpp"
 #include "lattice/clip_signature.hpp"
+#include "lattice/parallel.hpp"
 #include "lattice/quotient_builder.hpp"
 
 namespace meso::brep {
@@ -76,23 +75,13 @@ class ClipPlan {
 /// All tasks, by as many threads as the run allows; which thread does which does not show in the results.
 void clip_all(std::vector<ClipTask>& tasks, const std::vector<TopoDS_Shape>& solids, const BodySurface& surface,
               const CellGrid& grid, const RunOptions& run) {
-  const std::size_t wanted = run.jobs == 0 ? std::max(1u, std::thread::hardware_concurrency()) : run.jobs;
-  const std::size_t count = std::min(wanted, tasks.size());
   std::deque<CellClipper> clippers;  // they cannot be moved
-  for (std::size_t i = 0; i < count; ++i) clippers.emplace_back(solids, surface, grid, run);
-  std::atomic<std::size_t> next{0};
-  std::atomic<bool> failed{false};
-  const auto work = [&](CellClipper& clipper) {
-    for (std::size_t i = next++; i < tasks.size() && !failed && !run.should_stop(); i = next++) {
-      ClipTask& task = tasks[i];
-      task.result = clipper.clip(task.kind, task.cell, surface.faces(task.cell));
-      if (!task.result.fault.empty()) failed = true;
-    }
-  };
-  std::vector<std::thread> others;
-  for (std::size_t i = 1; i < count; ++i) others.emplace_back(work, std::ref(clippers[i]));
-  if (count > 0) work(clippers[0]);
-  for (std::thread& thread : others) thread.join();
+  for (std::size_t i = 0; i < workers_for(tasks.size(), run); ++i) clippers.emplace_back(solids, surface, grid, run);
+  (void)in_parallel(tasks.size(), run, [&](std::size_t worker, std::size_t i) {
+    ClipTask& task = tasks[i];
+    task.result = clippers[worker].clip(task.kind, task.cell, surface.faces(task.cell));
+    return task.result.fault.empty();
+  });
 }
 
 }  // namespace
@@ -104,6 +93,10 @@ std::optional<ClippedLattice> clipped_lattice_body(const CellShape& cell, const 
     sink.report({.code = Code::geometry_not_repeatable, .args = {std::move(what)}});
     return std::nullopt;
   };
+  const auto stopped = [&] {
+    sink.report({.code = run.out_of_time() ? Code::limit_time : Code::cancelled});
+    return std::nullopt;
+  };
   const Reach reach = reach_of(cell);
   if (std::max(reach.neighbours.size(), reach.rim.size()) > 64)
     return fault("the unit cell reaches too far beyond its box");
@@ -113,15 +106,13 @@ std::optional<ClippedLattice> clipped_lattice_body(const CellShape& cell, const 
   const BodySurface surface(body, grid);
   KeptCells cells({.min = {}, .max = last, .inside = {}}, grid.min, grid.max,
                   [&](const Index3& index) { return surface.place(index) != BoxPlace::outside; });
+  if (run.should_stop()) return stopped();
   CellKinds kinds(reach, cells);
   auto solids = kind_solids(cell, reach, kinds.parts(), sink);
   if (!solids) return {};
   ClipPlan plan(surface, cells, kinds, grid, options.reuse);
   clip_all(plan.tasks, *solids, surface, grid, run);
-  if (run.should_stop()) {
-    sink.report({.code = run.out_of_time() ? Code::limit_time : Code::cancelled});
-    return {};
-  }
+  if (run.should_stop()) return stopped();
   std::vector<std::uint32_t> kind_of_task;
   ClippedLattice out;
   out.distinct = plan.tasks.size();
@@ -142,7 +133,8 @@ std::optional<ClippedLattice> clipped_lattice_body(const CellShape& cell, const 
     out.crossing += task != KeptCells::none && plan.tasks[task].result.left == ClippedCell::Left::part;
   }
   if (out.kept == 0) return out;
-  auto quotient = build_quotient(cell, *solids, {.mesh = options.mesh}, 10 * cell.tolerance(), sink);
+  auto quotient = build_quotient(cell, *solids, {.mesh = options.mesh}, 10 * cell.tolerance(), run, sink);
+  if (run.should_stop()) return stopped();
   if (!quotient) return {};
   auto made = assemble(std::move(*quotient), std::move(cells), std::move(kinds), sink);
   if (!made) return {};

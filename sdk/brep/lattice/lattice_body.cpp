@@ -18,7 +18,7 @@ std::optional<Body> lattice_body(const CellShape& cell, const LatticeSet& set, c
   CellKinds kinds(reach, cells);
   const auto solids = kind_solids(cell, reach, kinds.parts(), sink);
   if (!solids) return {};
-  std::optional<Quotient> quotient = build_quotient(cell, *solids, options, cell.tolerance(), sink);
+  std::optional<Quotient> quotient = build_quotient(cell, *solids, options, cell.tolerance(), {.jobs = 1}, sink);
   if (!quotient) return {};
   return assemble(std::move(*quotient), std::move(cells), std::move(kinds), sink);
 }

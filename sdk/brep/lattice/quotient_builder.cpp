@@ -8,6 +8,7 @@
 #include "lattice/imprint.hpp"
 #include "lattice/natural_faces.hpp"
 #include "lattice/orbit_matcher.hpp"
+#include "lattice/parallel.hpp"
 #include "lattice/template_mesh.hpp"
 #include "meso/brep/instance_map.hpp"
 #include "shape_to_body.hpp"
@@ -36,7 +37,7 @@ class Builder {
   bool add_kind(const TopoDS_Shape& solid);
   void add_meshes(const MeshFineness& fineness);
   /// False if a solid is not a manifold.
-  [[nodiscard]] bool add_faces();
+  [[nodiscard]] bool add_faces(const RunOptions& run);
 
  private:
   struct Source {
@@ -46,6 +47,7 @@ class Builder {
     std::vector<std::uint32_t> face_lumps;
   };
 
+  [[nodiscard]] std::vector<Template> own_templates(const RunOptions& run) const;
   [[nodiscard]] bool on_wall(Vec3 p, std::size_t axis, int side) const {
     return std::fabs(p[axis] - (side ? cell_.box.max : cell_.box.min)[axis]) < 4 * tolerance_;
   }
@@ -138,11 +140,27 @@ std::uint32_t Builder::wall_orbit(const CellFace& face, const FaceTemplate& valu
   return wall_orbits_.emplace(key, static_cast<std::uint32_t>(wall_orbits_.size())).first->second;
 }
 
-bool Builder::add_faces() {
+/// Moments take most of the time, and each kind's are its own.
+std::vector<Template> Builder::own_templates(const RunOptions& run) const {
+  std::vector<Template> own(sources_.size());
+  const bool done = in_parallel(sources_.size(), run, [&](std::size_t, std::size_t k) {
+    try {
+      own[k] = shell_to_template(sources_[k].shell, polygons_.has_value());
+      return true;
+    } catch (const Standard_Failure&) {
+      return false;
+    }
+  });
+  if (!done) throw Standard_Failure("some face has no area, or the run was stopped");
+  return own;
+}
+
+bool Builder::add_faces(const RunOptions& run) {
+  std::vector<Template> templates = own_templates(run);
   for (std::size_t k = 0; k < sources_.size(); ++k) {
     const Source& source = sources_[k];
     CellKind& kind = quotient_.kinds[k];
-    Template own = shell_to_template(source.shell, polygons_.has_value());
+    Template& own = templates[k];
     std::size_t index = 0;
     for (TopExp_Explorer it(source.shell, TopAbs_FACE); it.More(); it.Next(), ++index) {
       FaceTemplate& value = own.faces[index];
@@ -246,7 +264,8 @@ std::optional<std::vector<TopoDS_Shape>> kind_solids(const CellShape& cell, cons
 }
 
 std::optional<Quotient> build_quotient(const CellShape& cell, const std::vector<TopoDS_Shape>& solids,
-                                       const LatticeOptions& options, double tolerance, DiagnosticSink& sink) {
+                                       const LatticeOptions& options, double tolerance, const RunOptions& run,
+                                       DiagnosticSink& sink) {
   const Vec3 size = cell.size();
   Quotient quotient;
   quotient.tolerance = cell.tolerance();
@@ -254,10 +273,12 @@ std::optional<Quotient> build_quotient(const CellShape& cell, const std::vector<
   std::string fault;
   try {
     Builder builder(cell, quotient, tolerance);
-    for (const TopoDS_Shape& solid : solids)
+    for (const TopoDS_Shape& solid : solids) {
+      if (run.should_stop()) throw Standard_Failure("stopped");
       if (!builder.add_kind(solid)) fault = "a face of the unit cell bounds no solid";
+    }
     if (options.mesh) builder.add_meshes(*options.mesh);
-    if (!builder.add_faces()) fault = "the unit cell is not a manifold inside its box";
+    if (!builder.add_faces(run)) fault = "the unit cell is not a manifold inside its box";
     if (fault.empty()) find_natural_faces(quotient);
   } catch (const Standard_Failure& failure) {
     fault = std::string("the faces of the unit cell cannot be read: ") + failure.GetMessageString();

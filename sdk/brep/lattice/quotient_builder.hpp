@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "lattice/quotient.hpp"
+#include "meso/base/run_options.hpp"
 
 namespace meso::brep {
 
@@ -15,9 +16,9 @@ namespace meso::brep {
                                                                    DiagnosticSink& sink);
 
 /// Points of two solids closer than `tolerance` are one. Empty, with GEOMETRY_NOT_REPEATABLE, if a solid is not a
-/// manifold.
+/// manifold or the run is to stop.
 [[nodiscard]] std::optional<Quotient> build_quotient(const CellShape& cell, const std::vector<TopoDS_Shape>& solids,
                                                      const LatticeOptions& options, double tolerance,
-                                                     DiagnosticSink& sink);
+                                                     const RunOptions& run, DiagnosticSink& sink);
 
 }  // namespace meso::brep

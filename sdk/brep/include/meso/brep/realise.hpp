@@ -6,8 +6,8 @@
 //   auto evaluation = eval::Evaluation::make(checked, {}, sink);
 //   if (auto made = brep::realise_build(*evaluation, {}, {}, sink)) write_step(made->body, ...);
 //
-// Three ways lead to a body, the first that fits is taken: a lattice aligned with its macrostructure becomes one
-// repeated template ("lattice"); cells that keep clear of the macrostructure's boundary and of each other become solids
+// Three ways lead to a body, the first that fits is taken: a lattice of boxes side by side becomes one repeated
+// template, clipped where the macrostructure's boundary crosses it ("lattice"); cells that keep clear of the macrostructure's boundary and of each other become solids
 // or voids of their own ("cells"); what is left is joined by general booleans, each checked ("boolean"). A part without
 // steps is its macrostructure ("direct").
 //
