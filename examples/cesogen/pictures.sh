@@ -27,7 +27,7 @@ gallery() {
     column=$(((column + 1) % 9))
     if ((column == 0)); then row=$((row + 1)); fi
   done < surfaces > "$name.txt"
-  draw "$name" 900 320 "@$name.txt" -b -1.05,-1.05,-6.05,21.05,1.05,1.05 -s 664,64,214
+  draw "$name" 720 440 "@$name.txt" -b -1.05,-1.05,-6.05,21.05,1.05,1.05 -s 664,64,214
 }
 
 draw hourglass 320 240 -s 100^3 \
@@ -38,6 +38,6 @@ draw trip0 320 240 -b -4,-4,-4,4,4,4 -s 100^3 ball scale 4 tpms.gyroid scale 4 i
 gallery endoskeletons offset 0.35
 gallery sheets shell 0.7
 meso sdf @baluster.txt -s 150^3 -o baluster.obj
-draw baluster 240 480 -s 200^3 tpms.neovius scale .065 file baluster.obj intersection
+draw baluster 400 240 -s 200^3 tpms.neovius scale .065 file baluster.obj intersection
 meso sdf @acorn.txt -s 100^3 -o acorn.obj
 draw acorn 320 240 -s 150^3 tpms.octo scale .009 file acorn.obj intersection
