@@ -14,13 +14,24 @@ Json check_json(const operations::Check& c) {
   return {{"what", c.what}, {"expected", c.expected}, {"found", c.found}, {"passed", c.passed}};
 }
 
-int verify_verb(Run& run, const std::string& file) {
+struct DeepFlags {
+  bool deep = false;
+  std::size_t points = 0;  ///< 0: not given
+};
+
+int verify_verb(Run& run, const std::string& file, const DeepFlags& flags) {
   if (!operations::is_document(file)) {
-    run.refuse_without_effect({{"--set", !run.flags.set.empty()}, {"--part", !run.flags.part.empty()}}, "on documents");
+    run.refuse_without_effect(
+        {{"--set", !run.flags.set.empty()}, {"--part", !run.flags.part.empty()}, {"--deep", flags.deep}},
+        "on documents");
   }
+  if (!flags.deep) run.refuse_without_effect({{"--points", flags.points > 0}}, "with --deep");
   const auto options = make_options(run);
   if (!options) return run.finish();
-  const auto report = operations::verify(file, *options, run.sink);
+  std::optional<operations::DeepCheck> deep;
+  if (flags.deep) deep.emplace();
+  if (deep && flags.points > 0) deep->points = flags.points;
+  const auto report = operations::verify(file, *options, deep, run.sink);
   Json json{{"file", file}};
   if (report) {
     json["verdict"] = report->passed() ? "passed" : "failed";
@@ -49,12 +60,16 @@ void add_verify(CLI::App& app, Run& run) {
   CLI::App* verb =
       app.add_subcommand("verify", "Recompute a document's validation values, or audit a .step, .stp or .stl");
   static std::string file;
+  static DeepFlags deep;
   verb->add_option("FILE", file, "Document or geometry")->required();
+  verb->add_flag("--deep", deep.deep, "Judge the part by face integrals and by random points, too");
+  verb->add_option("--points", deep.points, "Random points of --deep (2000000)")
+      ->check(CLI::Range(1000, 1'000'000'000));
   add_set_flag(*verb, run.flags);
   add_part_flag(*verb, run.flags);
   add_limit_flags(*verb, run.flags);
   add_json_flag(*verb, run.flags);
-  verb->callback([&run] { run.action = [&run] { return verify_verb(run, file); }; });
+  verb->callback([&run] { run.action = [&run] { return verify_verb(run, file, deep); }; });
 }
 
 }  // namespace meso::cli

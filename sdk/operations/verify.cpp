@@ -5,13 +5,15 @@
 #include <cmath>
 
 #include "audit_files.hpp"
+#include "deep_verify.hpp"
 #include "file_extension.hpp"
 #include "meso/base/number.hpp"
 #include "meso/brep/audit.hpp"
 #include "meso/brep/triangles.hpp"
+#include "meso/membership/crossings.hpp"
 #include "meso/validate/validate.hpp"
 #include "meso/xml/read.hpp"
-#include "winding.hpp"
+#include "prepare.hpp"
 
 namespace meso::operations {
 namespace fs = std::filesystem;
@@ -62,7 +64,7 @@ void check_part(VerifyReport& report, const Validation& expected, const Made& ma
   }
   std::vector<Vec3> points;
   for (const SamplePoint& s : expected.samples) points.push_back(mm * Vec3{s.x, s.y, s.z});
-  const std::vector<bool> inside = inside_by_winding(brep::triangles_of(body), points);
+  const std::vector<bool> inside = membership::inside_of(brep::triangles_of(body), points, {});
   for (std::size_t i = 0; i < points.size(); ++i) {
     const bool stated = expected.samples[i].inside;
     report.checks.push_back({"sample " + std::to_string(i + 1), stated ? "inside" : "outside",
@@ -70,40 +72,57 @@ void check_part(VerifyReport& report, const Validation& expected, const Made& ma
   }
 }
 
-/// Ids of the parts with validation values, restricted to --part.
-std::vector<std::string> parts_to_check(const Document& document, const std::string& only) {
-  std::vector<std::string> out;
+/// The parts to look at: the one that is asked for; else those with validation values, and where that is not enough
+/// those that are built.
+std::vector<const Part*> parts_to_check(const Document& document, const std::string& only, bool deep) {
+  const auto is_built = [&](const Part& part) {
+    return document.parts.size() == 1 ||
+           std::ranges::any_of(document.build, [&](const BuildItem& item) { return item.part.text == part.id.text; });
+  };
+  std::vector<const Part*> out;
   for (const Part& part : document.parts) {
-    if (part.validation && (only.empty() || part.id.text == only)) out.push_back(part.id.text);
+    if (!only.empty() && part.id.text != only) continue;
+    if (part.validation || (deep && (!only.empty() || is_built(part)))) out.push_back(&part);
   }
   return out;
 }
 
-std::optional<VerifyReport> verify_document(const fs::path& file, const MakeOptions& options, DiagnosticSink& sink) {
+/// Finer than what is written to files, so that thin struts are thicker than the doubt near a surface.
+constexpr double deep_fineness = 0.25;
+
+bool check_one(VerifyReport& report, const fs::path& file, const Part& part, MakeOptions options,
+               const std::optional<DeepCheck>& deep, DiagnosticSink& sink) {
+  options.part = part.id.text;
+  options.mesh = deep || !part.validation->samples.empty();
+  if (deep) {
+    const auto prepared = prepare(file, options, sink);
+    if (!prepared) return false;
+    options.deflection_mm = deep_fineness * prepared->realise.deflection_mm;
+  }
+  const auto made = make_body(file, options, sink);
+  if (!made) return false;
+  if (part.validation) check_part(report, *part.validation, *made);
+  report.measures = brep::measure(made->realisation.body);
+  const bool closed = brep::audit(made->realisation.body).clean();
+  report.closed = report.closed && closed;
+  report.checks.push_back({"closed " + part.id.text, "yes", closed ? "yes" : "no", closed});
+  return !deep || check_deep(report, *made, part, *deep, options.run, sink);
+}
+
+std::optional<VerifyReport> verify_document(const fs::path& file, const MakeOptions& options,
+                                            const std::optional<DeepCheck>& deep, DiagnosticSink& sink) {
   auto read = read_document_file(file, sink);
   if (!read) return std::nullopt;
   const auto checked = validate(std::move(read->document), std::move(read->source), file.parent_path(), sink);
   if (!checked) return std::nullopt;
   VerifyReport report{.closed = true};
-  const auto ids = parts_to_check(checked->document(), options.part);
-  if (ids.empty()) {
+  const auto parts = parts_to_check(checked->document(), options.part, deep.has_value());
+  if (parts.empty()) {
     sink.report({.code = Code::verify_nothing_stated, .where = {.file = file.string()}});
     return std::nullopt;
   }
-  for (const std::string& id : ids) {
-    MakeOptions one = options;
-    one.part = id;
-    const Part& part = *std::find_if(checked->document().parts.begin(), checked->document().parts.end(),
-                                     [&](const Part& p) { return p.id.text == id; });
-    one.mesh = !part.validation->samples.empty();
-    const auto made = make_body(file, one, sink);
-    if (!made) return std::nullopt;
-    check_part(report, *part.validation, *made);
-    report.measures = brep::measure(made->realisation.body);
-    const bool closed = brep::audit(made->realisation.body).clean();
-    report.closed = report.closed && closed;
-    report.checks.push_back({"closed " + id, "yes", closed ? "yes" : "no", closed});
-  }
+  for (const Part* part : parts)
+    if (!check_one(report, file, *part, options, deep, sink)) return std::nullopt;
   return report;
 }
 
@@ -113,7 +132,8 @@ bool VerifyReport::passed() const {
   return std::all_of(checks.begin(), checks.end(), [](const Check& c) { return c.passed; });
 }
 
-std::optional<VerifyReport> verify(const fs::path& file, const MakeOptions& options, DiagnosticSink& sink) {
+std::optional<VerifyReport> verify(const fs::path& file, const MakeOptions& options,
+                                   const std::optional<DeepCheck>& deep, DiagnosticSink& sink) {
   const std::string extension = lower_extension(file);
   std::optional<VerifyReport> report;
   if (extension == ".stl") {
@@ -121,7 +141,7 @@ std::optional<VerifyReport> verify(const fs::path& file, const MakeOptions& opti
   } else if (extension == ".step" || extension == ".stp") {
     report = audit_step(file, options.run, sink);
   } else {
-    report = verify_document(file, options, sink);
+    report = verify_document(file, options, deep, sink);
   }
   if (report && !report->passed()) {
     const auto failed =

@@ -20,8 +20,16 @@ struct VerifyReport {
   [[nodiscard]] bool passed() const;
 };
 
-/// `.meso`: recomputes the validation values of the parts that are made; `.step .stp .stl`: audits the file.
+/// How closely a part is looked at besides its stated values: edge uses, face integrals, and random points that are
+/// judged from the document's definitions alone (sdk/membership), against the volume and against the body's triangles.
+struct DeepCheck {
+  std::size_t points = 2'000'000;
+  std::uint64_t seed = 1;
+};
+
+/// `.meso`: recomputes the validation values of the parts that are made; `.step .stp .stl`: audits the file. With
+/// `deep`, which needs a document, every part that is made is looked at, whether it states values or not.
 [[nodiscard]] std::optional<VerifyReport> verify(const std::filesystem::path& file, const MakeOptions& options,
-                                                 DiagnosticSink& sink);
+                                                 const std::optional<DeepCheck>& deep, DiagnosticSink& sink);
 
 }  // namespace meso::operations
