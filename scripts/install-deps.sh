@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # Installs the Debian packages that building and testing Meso needs; does nothing where they are already there.
 #
-# usage: install-deps.sh [--all]     --all: also what slower checks and benchmarks need (clang, clang-tidy, FreeCAD, VTK, OpenVDB)
+# usage: install-deps.sh [--all]     --all: also what slower checks and benchmarks need (clang, clang-tidy, FreeCAD, Gmsh, VTK, OpenVDB)
 #
 # Works as root or through sudo. Made for Debian 12; the list is also a reading list for other systems.
 set -euo pipefail
@@ -25,7 +25,7 @@ packages=(
   # tests: GoogleTest, two judges of the XML schema, resource measurement
   libgtest-dev libgmock-dev libbenchmark-dev libxml2-utils libxerces-c-samples time
 )
-slower_checks=(clang-14 clang-format-14 clang-tidy-14 libclang-rt-14-dev freecad-python3)
+slower_checks=(clang-14 clang-format-14 clang-tidy-14 libclang-rt-14-dev freecad-python3 gmsh)
 # what bench/implicit_table.py compares with: VTK and OpenVDB, about 1 GB
 peers=(libvtk9-dev libopenvdb-dev)
 
