@@ -95,6 +95,7 @@ TEST_F(DeepVerify, ASolidTooMany) {
 TEST_F(DeepVerify, DocumentsWithoutStatedValues) {
   write("<cylinder x1='0' y1='0' z1='0' x2='20' y2='0' z2='0' radius='4'/>");
   EXPECT_FALSE(verify(file_, {}, {}, sink_));
+  sink_ = DiagnosticSink();
   const auto report = verify(file_, {}, DeepCheck{.points = 50'000}, sink_);
   ASSERT_TRUE(report);
   EXPECT_TRUE(report->passed());
