@@ -165,8 +165,9 @@ TEST_F(Sdf, IncludedWordsGiveEqualBytes) {
 
 TEST_F(Sdf, HierarchyAgreesWithItsSteps) {
   // Polished: where a distance meets the steeper field of a surface in an edge, the samples' linear interpolant takes
-  // more off the edge than either field alone (2 % of this volume).
-  const std::string box = " --polish -b -4,-4,-4,4,4,4 -s 60^3 ";
+  // more off the edge than either field alone (2 % of this volume at
+  // 130^3 samples; 0.2 % are left when polished).
+  const std::string box = " --polish -b -4,-4,-4,4,4,4 -s 50^3 ";
   const MeshMeasures direct = measure(
       box +
       "ball scale 5 tpms.p scale 4 tpms.d scale 3.75 tpms.gyroid scale 1.25 intersection intersection intersection");
@@ -175,8 +176,8 @@ TEST_F(Sdf, HierarchyAgreesWithItsSteps) {
   measure(box + "ball scale 5 tpms.p scale 4 intersection -o $/1.ply");
   measure(box + "file $/1.ply tpms.d scale 3.75 intersection -o $/2.ply");
   const MeshMeasures steps = measure(box + "file $/2.ply tpms.gyroid scale 1.25 intersection");
-  EXPECT_NEAR(steps.volume / direct.volume, 1, 0.01);
-  EXPECT_NEAR(steps.area / direct.area, 1, 0.01);
+  EXPECT_NEAR(steps.volume / direct.volume, 1, 0.02);
+  EXPECT_NEAR(steps.area / direct.area, 1, 0.03);
 }
 
 TEST_F(Sdf, ThirtyRoundTripsThroughFiles) {
