@@ -72,9 +72,10 @@ std::optional<TriangleMesh> read_surface_mesh(std::string_view bytes, const std:
     return {};
   }
   std::optional<TriangleMesh> mesh = reader(bytes, file, sink);
-  if (mesh && mesh->triangles.empty()) {
+  if (!mesh) return std::nullopt;
+  if (mesh->triangles.empty()) {
     sink.report({.code = Code::mesh_file_empty, .where = {.file = file}});
-    mesh.reset();
+    return std::nullopt;
   }
   return mesh;
 }
