@@ -38,6 +38,29 @@ Solids near(const Solids& solids, const Solids& others) {
   return out;
 }
 
+/// Solids that are connected by boxes that meet, in order of their first.
+std::vector<Solids> groups_by_box(const Solids& solids) {
+  std::vector<Bnd_Box> boxes(solids.size());
+  for (std::size_t i = 0; i < solids.size(); ++i) BRepBndLib::Add(solids[i], boxes[i]);
+  std::vector<bool> taken(solids.size(), false);
+  std::vector<Solids> groups;
+  for (std::size_t first = 0; first < solids.size(); ++first) {
+    if (taken[first]) continue;
+    std::vector<std::size_t> members{first};
+    taken[first] = true;
+    for (std::size_t m = 0; m < members.size(); ++m)
+      for (std::size_t i = first + 1; i < solids.size(); ++i) {
+        if (taken[i] || boxes[members[m]].IsOut(boxes[i])) continue;
+        taken[i] = true;
+        members.push_back(i);
+      }
+    std::ranges::sort(members);
+    Solids& group = groups.emplace_back();
+    for (const std::size_t m : members) group.push_back(solids[m]);
+  }
+  return groups;
+}
+
 TopTools_ListOfShape to_list(const Solids& solids) {
   TopTools_ListOfShape list;
   for (const TopoDS_Shape& solid : solids) list.Append(solid);
@@ -265,8 +288,15 @@ Solids solids_of(const TopoDS_Shape& shape) {
 }
 
 std::optional<Solids> fuse(const Solids& operands, ElementId where, const SolidContext& context) {
-  if (operands.size() < 2) return operands;
-  return checked(BOPAlgo_FUSE, {operands.front()}, {operands.begin() + 1, operands.end()}, where, context);
+  Solids all;
+  for (const Solids& group : groups_by_box(operands)) {
+    const auto joined = group.size() < 2
+                            ? std::optional(group)
+                            : checked(BOPAlgo_FUSE, {group.front()}, {group.begin() + 1, group.end()}, where, context);
+    if (!joined) return {};
+    all.insert(all.end(), joined->begin(), joined->end());
+  }
+  return all;
 }
 
 std::optional<Solids> common(const Solids& a, const Solids& b, ElementId where, const SolidContext& context) {

@@ -29,7 +29,7 @@ struct EdgeUses {
 /// The solids of any shape, each outward oriented.
 [[nodiscard]] Solids solids_of(const TopoDS_Shape& shape);
 
-/// The union of solids that may overlap.
+/// The union of solids that may overlap. Those whose boxes keep apart are left alone.
 [[nodiscard]] std::optional<Solids> fuse(const Solids& operands, ElementId where, const SolidContext& context);
 [[nodiscard]] std::optional<Solids> common(const Solids& a, const Solids& b, ElementId where,
                                            const SolidContext& context);

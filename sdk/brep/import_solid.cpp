@@ -7,9 +7,11 @@
 #include <STEPControl_Reader.hxx>
 #include <algorithm>
 #include <cctype>
+#include <charconv>
 #include <fstream>
 #include <iterator>
 #include <mutex>
+#include <unordered_map>
 
 #include "boolean.hpp"
 #include "import_stl.hpp"
@@ -63,6 +65,10 @@ std::optional<Solids> read_step(const path& file, ElementId where, const SolidCo
     context.report(Code::import_unreadable, where, {file.string(), "it has a number that is not finite"});
     return {};
   }
+  if (const auto fault = reference_fault(text)) {
+    context.report(Code::import_unreadable, where, {file.string(), *fault});
+    return {};
+  }
   const TopoDS_Shape shape = read_step_shape(file);
   if (shape.IsNull()) {
     context.report(Code::import_unreadable, where, {file.string(), "it is not a complete STEP file"});
@@ -99,6 +105,56 @@ bool has_bad_number(std::string_view step) {
   return false;
 }
 
+std::optional<std::string> reference_fault(std::string_view step) {
+  // Which entity refers to which: `#12 = NAME('text', #3, (#4, #5));`.
+  std::unordered_map<std::uint64_t, std::size_t> place_of;
+  std::vector<std::vector<std::uint64_t>> references;
+  bool in_string = false, is_begin = true;
+  for (std::size_t i = 0; i < step.size(); ++i) {
+    const char c = step[i];
+    if (c == '\'') in_string = !in_string;
+    if (in_string) continue;
+    if (c == ';') is_begin = true;
+    if (c != '#') continue;
+    std::uint64_t id = 0;
+    const auto [end, error] = std::from_chars(step.data() + i + 1, step.data() + step.size(), id);
+    if (error != std::errc()) continue;
+    i = static_cast<std::size_t>(end - step.data()) - 1;
+    if (is_begin) {
+      if (!place_of.emplace(id, references.size()).second) return "it has two entities #" + std::to_string(id);
+      references.emplace_back();
+    } else if (!references.empty()) {
+      references.back().push_back(id);
+    }
+    is_begin = false;
+  }
+  // Depth first: an entity that is met while it is open closes a circle.
+  enum class State : std::uint8_t { fresh, open, done };
+  std::vector<State> states(references.size(), State::fresh);
+  std::vector<std::pair<std::size_t, std::size_t>> path;  // entity, next of its references
+  for (std::size_t root = 0; root < references.size(); ++root) {
+    if (states[root] != State::fresh) continue;
+    states[root] = State::open;
+    path.assign(1, {root, 0});
+    while (!path.empty()) {
+      auto& [entity, next] = path.back();
+      if (next == references[entity].size()) {
+        states[entity] = State::done;
+        path.pop_back();
+        continue;
+      }
+      const std::uint64_t id = references[entity][next++];
+      const auto found = place_of.find(id);
+      if (found == place_of.end()) return "it has no entity #" + std::to_string(id);
+      if (states[found->second] == State::done) continue;
+      if (states[found->second] == State::open) return "its entities refer to each other in a circle";
+      states[found->second] = State::open;
+      path.emplace_back(found->second, 0);
+    }
+  }
+  return {};
+}
+
 std::optional<Solids> import_solids(const eval::ImportShape& import, const Affine& map, ElementId where,
                                     const SolidContext& context) {
   if (!hash_holds(import, where, context)) return {};
@@ -116,6 +172,9 @@ std::optional<Solids> import_solids(const eval::ImportShape& import, const Affin
     context.report(Code::import_not_closed, where, {import.file.string(), *fault});
     return {};
   }
+  // Solids of one body may overlap; what follows counts on solids that do not.
+  read = fuse(*read, where, context);
+  if (!read) return {};
   const double s = import.scale;
   const Affine scaled{Mat3::from_columns({s, 0, 0}, {0, s, 0}, {0, 0, s}), {}};
   for (TopoDS_Shape& solid : *read) solid = mapped(solid, map * import.transform * scaled);

@@ -4,7 +4,8 @@
 //
 // A stated SHA-256 must match (IMPORT_CHANGED). The file must hold at least one solid, and each must be closed with a
 // positive volume (IMPORT_NOT_CLOSED); nothing is healed. STEP costs about 1 ms a face, growing faster than the number
-// of faces. OpenCASCADE hangs on NaN in STEP: such files are refused before it sees them.
+// of faces. OpenCASCADE hangs on NaN in STEP and overruns its stack where entities refer to each other in a
+// circle: such files are refused before it sees them.
 
 #include <optional>
 
@@ -18,5 +19,7 @@ namespace meso::brep {
 
 /// True if a STEP file has a number that is not one (NaN, Inf) outside its strings.
 [[nodiscard]] bool has_bad_number(std::string_view step);
+/// What is wrong with the references between a STEP file's entities: one that is missing or there twice, or a circle.
+[[nodiscard]] std::optional<std::string> reference_fault(std::string_view step);
 
 }  // namespace meso::brep

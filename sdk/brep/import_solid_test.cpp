@@ -106,11 +106,70 @@ TEST_F(ImportSolids, OpenSurfaces) {
 TEST_F(ImportSolids, FilesThatAreNotStep) {
   const std::string step = text_of(beam);
   expect_refused(written("empty.step", ""), Code::import_unreadable);
-  expect_refused(written("cut.step", step.substr(0, step.size() / 2)), Code::import_unreadable);
+  expect_refused(written("half.step", step.substr(0, step.size() / 2)), Code::import_unreadable);
+  expect_refused(written("most.step", step.substr(0, step.size() * 95 / 100)), Code::import_unreadable);
   expect_refused(written("garbage.stp", "not a step file"), Code::import_unreadable);
   expect_refused(folder_ / "missing.step", Code::import_unreadable);
   expect_refused(written("nan.step", replaced(step, "CARTESIAN_POINT('',(", "CARTESIAN_POINT('',(NAN,")),
                  Code::import_unreadable);
+}
+
+TEST_F(ImportSolids, StepInOtherUnits) {
+  const std::string step = text_of(beam);
+  const auto volume = [&](const std::string& unit) {
+    const auto solids = imported(
+        {.file = written("unit.step", replaced(step, "(LENGTH_UNIT()NAMED_UNIT(*)SI_UNIT(.MILLI.,.METRE.));", unit))});
+    return solids && solids->size() == 1 ? volume_of(solids->front()) : 0;
+  };
+  EXPECT_NEAR(volume("(LENGTH_UNIT()NAMED_UNIT(*)SI_UNIT(.CENTI.,.METRE.));") / 280000e3, 1, 1e-6);
+  EXPECT_NEAR(volume("(LENGTH_UNIT()NAMED_UNIT(*)SI_UNIT($,.METRE.));") / 280000e9, 1, 1e-6);
+  EXPECT_NEAR(volume("(CONVERSION_BASED_UNIT('INCH',#9001)LENGTH_UNIT()NAMED_UNIT(#9002));\n"
+                     "#9001=LENGTH_MEASURE_WITH_UNIT(LENGTH_MEASURE(25.4),#9003);\n"
+                     "#9002=DIMENSIONAL_EXPONENTS(1.,0.,0.,0.,0.,0.,0.);\n"
+                     "#9003=(LENGTH_UNIT()NAMED_UNIT(*)SI_UNIT(.MILLI.,.METRE.));") /
+                  (280000 * std::pow(25.4, 3)),
+              1, 1e-6);
+}
+
+TEST_F(ImportSolids, StepThatReferencesItself) {
+  const std::string step = text_of(beam);
+  for (const char* entity : {"=CLOSED_SHELL('',(", "=MANIFOLD_SOLID_BREP('',", "=AXIS2_PLACEMENT_3D('',"}) {
+    const auto at = step.find(entity), line = step.rfind('#', at), first = step.find('#', at);
+    const auto end = step.find_first_of(",)", first);
+    const std::string own = step.substr(line, at - line);
+    sink_ = DiagnosticSink();
+    const auto solids = imported({.file = written("cyclic.step", step.substr(0, first) + own + step.substr(end))});
+    EXPECT_FALSE(solids) << entity;
+    EXPECT_TRUE(sink_.has_errors());
+  }
+}
+
+TEST_F(ImportSolids, StepWithNumbersBeyondRange) {
+  const std::string step = text_of(beam);
+  sink_ = DiagnosticSink();
+  EXPECT_FALSE(
+      imported({.file = written("huge.step", replaced(step, "CARTESIAN_POINT('',(", "CARTESIAN_POINT('',(1E400,"))}));
+  EXPECT_TRUE(sink_.has_errors());
+}
+
+TEST_F(ImportSolids, ReferencesThatLeadNowhere) {
+  EXPECT_FALSE(reference_fault("#1=A('#9',#2);\n#2=B((#3),#3);#3=C();"));
+  EXPECT_TRUE(reference_fault("#1=A(#2);#2=B(#3);"));
+  EXPECT_TRUE(reference_fault("#1=A(#2);#2=B();#2=C();"));
+  EXPECT_TRUE(reference_fault("#1=A(#2);#2=B(#1);"));
+}
+
+TEST_F(ImportSolids, SolidsThatOverlapAreUnited) {
+  // Two cubes of edge 10, the second moved by 5: their volumes do not add up.
+  const std::string one = cube_stl();
+  std::string other = one;
+  for (std::size_t at = 0; (at = other.find("vertex ", at)) != std::string::npos; at += 7)
+    other.replace(at + 7, other[at + 7] == '1' ? 2 : 1, other[at + 7] == '1' ? "15" : "5");
+  const auto solids = imported({.file = written("two.stl", one + other)});
+  ASSERT_TRUE(solids);
+  double volume = 0;
+  for (const TopoDS_Shape& solid : *solids) volume += volume_of(solid);
+  EXPECT_NEAR(volume, 1500, 1e-6);
 }
 
 TEST_F(ImportSolids, NumbersThatAreNone) {
