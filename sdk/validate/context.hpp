@@ -55,6 +55,7 @@ class Context {
     Kind kind{};
     std::size_t index = 0;  ///< in its section
     const Element* element = nullptr;
+    bool is_forgotten = false;  ///< nothing can be said about it: find() does not know it
   };
   std::map<std::string, Entry, std::less<>> ids;
   /// The document's parameters, the outermost scope.
@@ -65,12 +66,17 @@ class Context {
   template <class T>
   [[nodiscard]] const T* find(const Ref<T>& ref) const {
     const auto found = ids.find(ref.text);
-    if (found == ids.end() || found->second.kind != KindOf<T>::kind) return nullptr;
+    if (found == ids.end() || found->second.kind != KindOf<T>::kind || found->second.is_forgotten) return nullptr;
     return &KindOf<T>::items(document)[found->second.index];
   }
   template <class T>
   [[nodiscard]] const T* find(const std::optional<Ref<T>>& ref) const {
     return ref ? find(*ref) : nullptr;
+  }
+
+  template <class T>
+  void forget(const T& item) {
+    if (const auto found = ids.find(item.id.text); found != ids.end()) found->second.is_forgotten = true;
   }
 
   /// A fault of an element, of one of its attributes, or of some bytes of the attribute's value.

@@ -12,6 +12,8 @@ namespace meso {
 
 /// fills the table of ids.
 void collect_ids(Context& c);
+/// unit cells of the library get its parameters, box and body. `document` is the context's.
+void fill_library_cells(Context& c, Document& document);
 /// references, files, sums.
 void check_links(Context& c);
 ///

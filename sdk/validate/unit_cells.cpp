@@ -44,7 +44,8 @@ void check_implicit(Context& c, const UnitCell& cell, const ImplicitBody& body, 
 }
 
 void check_body(Context& c, const UnitCell& cell, const Scope& scope) {
-  if (std::holds_alternative<std::monostate>(cell.body))
+  // one of the library has a body, unless its name is wrong.
+  if (std::holds_alternative<std::monostate>(cell.body) && !cell.library)
     c.report(Code::content_needed, cell, "", {"unitCell", "a body", "none"});
   if (const auto* csg = std::get_if<CsgBody>(&cell.body)) check_csg(c, *csg, scope);
   if (const auto* beams = std::get_if<BeamsBody>(&cell.body)) check_beams(c, *beams, scope);

@@ -13,6 +13,7 @@ std::optional<CheckedDocument> Validator::run(Document document, SourceMap sourc
   const std::size_t errors_before = sink.error_count();
   Context c(document, source, folder, sink);
   collect_ids(c);
+  fill_library_cells(c, document);
   check_links(c);
   check_cycles(c);
   check_parameters(c);

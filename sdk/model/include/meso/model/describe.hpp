@@ -505,6 +505,7 @@ void describe(V& v, E& e) {
 template <class V, Of<UnitCell> E>
 void describe(V& v, E& e) {
   v.attribute("id", e.id);
+  v.attribute("library", e.library);
   v.attribute("clipToBox", e.clip_to_box);
   v.children("parameter", e.parameters);
   v.child("box", e.box);

@@ -72,6 +72,7 @@ struct CellBox : Element {
 using CellBody = std::variant<std::monostate, CsgBody, BeamsBody, ImplicitBody, ImportBody, PartBody>;
 struct UnitCell : Element {
   Id id;
+  std::optional<Name> library;      ///< a cell that every reader knows: then no box, no body
   std::optional<bool> clip_to_box;  ///< false; implicit bodies are always cut
   std::vector<CellParameter> parameters;
   std::optional<CellBox> box;
