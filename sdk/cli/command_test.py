@@ -48,7 +48,7 @@ def needs(verb):
 
 def flags_in_help(verb):
     text = subprocess.run([MESO, verb, "--help"], capture_output=True, text=True, check=True).stdout
-    return set(re.findall(r"^\s+(?:-\w,)?(--[a-z-]+)", text, re.M)) - {"--help"}
+    return set(re.findall(r"^\s+(?:-\w,)?(--[a-z-]+)", text, re.M)) - {"--help", "--version"}
 
 
 def flags_in_page():
