@@ -46,7 +46,7 @@ def sectors_volume():
 CELL = bcc_cell(5, 0.5, 0.9)
 THOUSANDS_10 = ["--set", "nx=20", "--set", "ny=20", "--set", "nz=25"]
 THOUSANDS_100 = ["--set", "nx=40", "--set", "ny=50", "--set", "nz=50"]
-OFFSET = ["--set", "x=1.3mm", "--set", "y=1.7mm", "--set", "z=2.1mm"]
+OFFSET = ["--set", "shiftX=1.3mm", "--set", "shiftY=1.7mm", "--set", "shiftZ=2.1mm"]
 # name, document, settings, output, seconds asked for, seconds aimed at, volume where it has a closed form
 ROWS = [
     ("aligned I-beam, 2 240 cells", "beam", [], "step", 3, 1, 2240 * CELL),
@@ -92,7 +92,7 @@ def rows_of_figures(meso, folder, quick):
             cells[report["cells"]["kept"]] = report["cpu"]
         rows.append([name, kind, f"{asked}", f"{aim}", f"{seconds:.2f}", f"{report['cpu']:.2f}",
                      f"{report['peakBytes'] / 2**20:.0f}", f"{size / 1e6:.1f}", f"{ratio:.1f}",
-                     f"{report.get('faces', 0) or report.get('triangles', 0)}", error])
+                     f"{report["triangles"] or report["faces"]}", error])
     return rows, cells
 
 
