@@ -92,7 +92,7 @@ def rows_of_figures(meso, folder, quick):
             cells[report["cells"]["kept"]] = report["cpu"]
         rows.append([name, kind, f"{asked}", f"{aim}", f"{seconds:.2f}", f"{report['cpu']:.2f}",
                      f"{report['peakBytes'] / 2**20:.0f}", f"{size / 1e6:.1f}", f"{ratio:.1f}",
-                     f"{report["triangles"] or report["faces"]}", error])
+                     f"{report['triangles'] or report['faces']}", error])
     return rows, cells
 
 
