@@ -24,7 +24,6 @@ import tempfile
 import time
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
-BINARIES = ROOT / "build/release/bin"
 TRIANGLES = re.compile(r'"triangles": (\d+)|(\d+) triangles')
 READING = re.compile(r"([\d.]+) s reading")
 GYROID = "cos(2*pi*x)*sin(2*pi*y) + cos(2*pi*y)*sin(2*pi*z) + cos(2*pi*z)*sin(2*pi*x)"
@@ -78,7 +77,7 @@ def median(runs, key):
 
 def row(name, runs, samples=None, ours=None):
     triangles = runs[0]["triangles"]
-    error = f"{runs[0]['error'][0]:.3f} / {runs[0]['error'][1]:.3f}" if "error" in runs[0] else ""
+    error = f"{runs[0]['error'][0]:.4f} / {runs[0]['error'][1]:.4f}" if "error" in runs[0] else ""
     ratio = lambda key: statistics.median(a[key] / b[key] for a, b in zip(ours, runs)) if ours else None
     ratios = f"{ratio('cpu'):.3f} / {ratio('user'):.3f} / {ratio('wall'):.3f}" if ours else ""
     print(f"| {name} | {median(runs, 'cpu'):.2f} | {median(runs, 'user'):.2f} | {median(runs, 'wall'):.2f} "
@@ -104,15 +103,15 @@ def alternate(commands, pairs, out, samples):
     return runs
 
 
-def against_peers(samples, pairs, out):
+def against_peers(binaries, samples, pairs, out):
     head(f"Gyroid as a text over [-1,1]³, {samples}³ samples, closed at the box, binary PLY; medians of {pairs}")
     commands = {}
     for threads in (1, 2):
         commands[f"meso, {threads} thread{'s' * (threads > 1)}"] = [
-            BINARIES / "meso", "sdf", "expression", GYROID, "-s", f"{samples},{samples},{samples}", "-b", "-1,-1,-1,1,1,1",
+            binaries / "meso", "sdf", "expression", GYROID, "-s", f"{samples},{samples},{samples}", "-b", "-1,-1,-1,1,1,1",
             "-o", out, "--jobs", threads]
         for title, peer in (("VTK FlyingEdges", "vtk_flying_edges"), ("OpenVDB", "openvdb")):
-            binary = BINARIES / f"meso_bench_peer_{peer}"
+            binary = binaries / f"meso_bench_peer_{peer}"
             if binary.exists():
                 commands[f"{title}, {threads} thread{'s' * (threads > 1)}"] = [binary, samples, threads, out]
     runs = alternate(commands, pairs, out, samples)
@@ -123,13 +122,14 @@ def against_peers(samples, pairs, out):
     print(f"\nWall on 2 threads over wall on one: {statistics.median(b['wall'] / a['wall'] for a, b in zip(one, two)):.2f}.")
 
 
-def ours_alone(pairs, out, folder):
+def ours_alone(binaries, pairs, out, folder):
     head(f"meso sdf alone, 1 thread; medians of {pairs}")
     flags = ["-o", out, "--jobs", 1]
     box = lambda half: ["-b", ",".join([f"-{half}"] * 3 + [f"{half}"] * 3)]
-    meso = [BINARIES / "meso", "sdf"]
+    meso = [binaries / "meso", "sdf"]
     mesh = folder / "torus.ply"
-    write_torus(mesh, 1000, 500)
+    # By another process: a child's peak counts what its parent held when it was started.
+    subprocess.run([sys.executable, __file__, "--write-torus", mesh], check=True)
     commands = {
         "gyroid as a text, 1600³": meso + ["expression", GYROID, "-s", "1600,1600,1600"] + box(1) + flags,
         "hierarchy of figure 6, 512³": meso + HIERARCHY + ["-s", "512,512,512"] + box(4) + flags,
@@ -163,8 +163,8 @@ def write_torus(path, around, across):
     path.write_bytes(header.encode() + b"".join(points) + b"".join(faces))
 
 
-def kernels():
-    binary = BINARIES / "meso_bench_implicit"
+def kernels(binaries):
+    binary = binaries / "meso_bench_implicit"
     report = subprocess.run([binary, "--benchmark_format=json", "--benchmark_min_time=0.2"], stdout=subprocess.PIPE, check=True).stdout
     times = {b["name"]: b["ns_per_sample"] for b in json.loads(report)["benchmarks"]}
     print("\nFilling, one thread, CPU nanoseconds per sample in rows of 800 (meso_bench_implicit)\n")
@@ -179,18 +179,23 @@ def kernels():
 def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("--pairs", type=int, default=5)
-    parser.add_argument("--samples", type=int, default=800)
+    parser.add_argument("--samples", type=int, default=800, help="along each axis, of the rows beside peers")
+    parser.add_argument("--binaries", type=pathlib.Path, default=ROOT / "build/release/bin")
     parser.add_argument("--only", choices=["peers", "ours", "kernels"])
+    parser.add_argument("--write-torus", type=pathlib.Path, help=argparse.SUPPRESS)
     arguments = parser.parse_args()
+    if arguments.write_torus:
+        write_torus(arguments.write_torus, 1000, 500)
+        return
     print(f"{os.cpu_count()} cores, load {os.getloadavg()[0]:.1f} at the start.")
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
         if arguments.only in (None, "peers"):
-            against_peers(arguments.samples, arguments.pairs, folder / "out.ply")
+            against_peers(arguments.binaries, arguments.samples, arguments.pairs, folder / "out.ply")
         if arguments.only in (None, "ours"):
-            ours_alone(arguments.pairs, folder / "out.ply", folder)
+            ours_alone(arguments.binaries, arguments.pairs, folder / "out.ply", folder)
         if arguments.only in (None, "kernels"):
-            kernels()
+            kernels(arguments.binaries)
 
 
 if __name__ == "__main__":

@@ -321,5 +321,54 @@ class Outputs(CommandTest):
                 self.assert_nothing_written()
 
 
+@needs("sdf")
+class CommandLanguage(CommandTest):
+    def sdf(self, code, words, says=""):
+        return self.expect(code, "sdf", *words.split(), says=says, cwd=self.folder)
+
+    def test_words_and_flags_mix(self):
+        report = json.loads(self.sdf(0, "--jobs 1 ball --json move -1,0,0 -o ball.stl -s 30^3 --no-clobber").stdout)
+        self.assertEqual(sorted(report), sorted("""output volume area solidFraction triangles vertices components closed euler
+                                                   bbox box samples undefined bytes seconds peakBytes diagnostics""".split()))
+        self.assertAlmostEqual(report["volume"], 4.18879, delta=0.05)
+        self.assertEqual((report["components"], report["euler"], report["closed"], report["samples"]), (1, 2, True, [30] * 3))
+        self.assertEqual(report["bytes"], (self.folder / "ball.stl").stat().st_size)
+        self.sdf(7, "ball -o ball.stl --no-clobber", says="WRITE_EXISTS")
+        self.assertIn(b"intersection", self.sdf(0, "-h").stdout)
+        self.sdf(0, "ball --version")
+        self.sdf(0, "ball -s 20^3")
+        self.assertTrue((self.folder / "out.ply").exists())
+
+    def test_faults_have_codes_of_the_one_table(self):
+        (self.folder / "loop.txt").write_text("@loop.txt")
+        (self.folder / "empty.off").write_text("OFF\n0 0 0\n")
+        (self.folder / "full.ply").symlink_to("/dev/full")
+        for code, says, words in ((2, "SDF_STACK_LEFT", ""), (2, "SDF_STACK_LEFT", "ball ball"), (2, "SDF_STACK_UNDERFLOW", "union"),
+                                  (2, "^~~", "ball bxo"), (2, "SDF_VALUE", "ball scale 0"), (2, "SDF_INCLUDE", "@loop.txt"),
+                                  (2, "SDF_EXTENSION", "ball -o a.step"), (2, "USAGE", "ball --jobs many"), (2, "USAGE", "ball --double -o a.stl"),
+                                  (2, "SDF_UNKNOWN_WORD", "ball --max-cells 3"), (3, "FILE_NOT_FOUND", "@none.txt"), (3, "FILE_NOT_FOUND", "file none.ply"),
+                                  (3, "MESH_FILE", "file empty.off"), (7, "WRITE_FAILED", "ball -o none/a.ply"), (7, "WRITE_FAILED", "ball -s 200^3 -o full.ply"),
+                                  (6, "LIMIT", "tpms.gyroid -s 30000,30000,30000 --max-memory 256M -o a.ply"), (6, "LIMIT_TIME", "tpms.gyroid -s 3000,3000,3000 --timeout 0.2 -o a.ply")):
+            with self.subTest(words=words):
+                self.sdf(code, words, says=says)
+        self.assertFalse(any(self.folder.glob("a.*")) or any(self.folder.glob("out*")))
+        failed = json.loads(self.sdf(2, "ball bxo --json").stdout)
+        self.assertEqual(failed["diagnostics"][0]["code"], "SDF_UNKNOWN_WORD")
+
+    def test_an_empty_solid_is_a_warning(self):
+        report = json.loads(self.sdf(0, "tpms.gyroid offset -9 --json", says="SDF_EMPTY").stdout)
+        self.assertEqual((report["triangles"], report["volume"], report["bbox"]), (0, 0, None))
+
+    def test_equal_bytes(self):
+        for name in ("a.ply", "a.stl", "a.obj", "a.off", "a.vtk"):
+            seen = set()
+            for number, jobs in enumerate((1, 2, 7)):
+                locale = {**os.environ, "LC_ALL": ["C", "de_DE.UTF-8", "tr_TR.UTF-8"][number]}
+                self.expect(0, "sdf", "tpms.s", "-s", "40^3", "-o", name, "--jobs", jobs, env=locale, cwd=self.folder)
+                seen.add((self.folder / name).read_bytes())
+            with self.subTest(name=name):
+                self.assertEqual(len(seen), 1)
+
+
 if __name__ == "__main__":
     unittest.main()
