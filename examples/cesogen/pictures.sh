@@ -15,19 +15,19 @@ draw() {  # draw NAME WIDTH HEIGHT WORDS...
   meso render "$name.stl" "$here/$name.png" --width "$width" --height "$height"
 }
 
-# gallery NAME CHANGE...: the 27 surfaces, each in a box of its own, nine in a row
+# gallery NAME CHANGE...: a cell of each of the 27 surfaces in a box of its own, nine in a row
 gallery() {
   local name=$1 column=0 row=0
   shift
   : > "$name.txt"
   sed -n "/<<'TABLE'/,/^TABLE/p" "$here/run.sh" | sed '1d;$d' > surfaces
   while read -r surface _; do
-    echo "tpms.$surface $* box intersection move $((column * 5 / 2)).$((column * 25 % 10)),0,-$((row * 5 / 2)).$((row * 25 % 10))"
+    echo "tpms.$surface $* scale 2 box intersection move $((column * 5 / 2)).$((column * 25 % 10)),0,-$((row * 5 / 2)).$((row * 25 % 10))"
     if ((column + row > 0)); then echo union; fi
     column=$(((column + 1) % 9))
     if ((column == 0)); then row=$((row + 1)); fi
   done < surfaces > "$name.txt"
-  draw "$name" 720 440 "@$name.txt" -b -1.05,-1.05,-6.05,21.05,1.05,1.05 -s 664,64,214
+  draw "$name" 660 400 "@$name.txt" -b -1.05,-1.05,-6.05,21.05,1.05,1.05 -s 1106,106,356
 }
 
 draw hourglass 320 240 -s 100^3 \
