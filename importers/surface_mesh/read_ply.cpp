@@ -99,7 +99,10 @@ class PlyReader {
 
   std::optional<TriangleMesh> read() {
     for (const PlyElement& element : header_.elements) {
-      if (element.properties.empty()) continue;
+      if (element.properties.empty()) {  // no bytes; refused if triangles would refer to it
+        if (element.name == "vertex" && !read_points(element)) return {};
+        continue;
+      }
       const std::uint64_t most = values_.remaining() / element.least_bytes(header_.format);
       if (element.count > most) {
         (void)values_.report(Code::mesh_file_truncated,

@@ -214,7 +214,7 @@ TEST(ReadSurfaceMesh, TakesNoMemoryForCountsThatTheFileCannotHold) {
   EXPECT_EQ(only_error("ply\nformat binary_little_endian 1.0\nelement vertex 9000000000000000000\nelement face 1\n"
                        "property list uint int vertex_indices\nend_header\n\xff\xff\xff\x7f")
                 .code,
-            Code::mesh_file_syntax);
+            Code::mesh_file_unsupported);  // points without coordinates
 }
 
 /// Every file cut anywhere, and with any byte changed, ends in a mesh or in one error.
@@ -252,6 +252,15 @@ TEST(ReadSurfaceMesh, ReadsFiles) {
   EXPECT_FALSE(read_surface_mesh_file(path + ".not_there", sink));
   EXPECT_EQ(sink.diagnostics().back().code, Code::file_not_found);
   EXPECT_FALSE(read_surface_mesh_file(::testing::TempDir(), sink));
+}
+
+TEST(ReadPly, RefusesPointsWithoutCoordinates) {
+  constexpr std::string_view start = "ply\nformat ascii 1.0\nelement vertex 4000000000\nelement face 1\n";
+  for (const std::string_view face : {"4 0 1000000000 2000000000 3\n", "3 0 1 2\n"}) {
+    const std::string text =
+        std::string(start) + "property list uchar int vertex_indices\nend_header\n" + std::string(face);
+    EXPECT_EQ(only_error(text).code, Code::mesh_file_unsupported);
+  }
 }
 
 }  // namespace

@@ -74,7 +74,6 @@ Json report_json(const operations::SdfReport& r, const std::string& out) {
   j["bbox"] = m.box.empty() ? Json() : Json{point(m.box.min), point(m.box.max)};
   j["box"] = {point(r.grid.box.min), point(r.grid.box.max)};
   j["samples"] = r.grid.nodes;
-  j["undefined"] = r.undefined;
   j["bytes"] = r.bytes;
   j["seconds"] = {{"read", r.seconds.read}, {"contour", r.seconds.contour}, {"total", r.seconds.total}};
   j["peakBytes"] = peak_memory_bytes();
@@ -86,9 +85,6 @@ void print_summary(const operations::SdfReport& r, const std::string& out) {
              r.bytes);
   fmt::print(stderr, "{} x {} x {} samples: {:.3f} s reading, {:.3f} s contouring and writing\n", r.grid.nodes[0],
              r.grid.nodes[1], r.grid.nodes[2], r.seconds.read, r.seconds.contour);
-  if (r.undefined > 0)
-    fmt::print(stderr, "the field has no value beside {} of the crossings; such points count as outside\n",
-               r.undefined);
 }
 
 /// The values of our flags, checked as on any other verb.

@@ -5,7 +5,6 @@
 #include <cerrno>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <system_error>
 
 #include "measured_mesh_sink.hpp"
@@ -88,7 +87,6 @@ bool write_surface(const implicit::GridSource& source, MeshFormat format, const 
   report.points = contoured->points;
   report.triangles = contoured->triangles;
   report.euler = contoured->euler;
-  report.undefined = contoured->undefined;
   if (options.measure) report.measures = measured.measures();
   std::error_code error;
   const auto bytes = fs::file_size(program.output, error);
@@ -123,11 +121,17 @@ std::optional<SdfReport> run_sdf(const sdf::Program& program, const SdfOptions& 
 }
 
 sdf::ProgramOptions::Text read_text(const std::string& path) {
+  constexpr std::size_t most_text_bytes = std::size_t{16} << 20;
   std::error_code error;
   if (fs::is_directory(path, error)) return {.why_not = std::make_error_code(std::errc::is_a_directory).message()};
   std::ifstream in(path, std::ios::binary);
   if (!in) return {.why_not = std::generic_category().message(errno)};
-  return {.text = std::string((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>())};
+  // Words of a program, not data: whatever never ends (/dev/zero, a pipe) must not fill the memory.
+  std::string text(most_text_bytes + 1, '\0');
+  in.read(text.data(), static_cast<std::streamsize>(text.size()));
+  text.resize(static_cast<std::size_t>(in.gcount()));
+  if (text.size() > most_text_bytes) return {.why_not = "it holds more than 16 MiB"};
+  return {.text = std::move(text)};
 }
 
 }  // namespace meso::operations

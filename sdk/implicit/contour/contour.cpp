@@ -77,7 +77,7 @@ class Contouring {
 template <class Pass, class Brick>
 bool Contouring::for_each_brick(OrderedOutput& output, Pass make_pass, Brick do_brick) {
   std::atomic<std::size_t> ticket{0};
-  const auto work = [&](std::size_t) {
+  const auto make_bricks = [&] {
     auto pass = make_pass();
     while (!pulse_.stopped() && !output.failed()) {
       ByteBuffer bytes = output.acquire();
@@ -88,6 +88,16 @@ bool Contouring::for_each_brick(OrderedOutput& output, Pass make_pass, Brick do_
       output.finish(brick, std::move(bytes));
     }
     if (pulse_.stopped()) output.stop();
+  };
+  // Memory may run out in any thread: the others must not go on waiting for its brick.
+  const auto work = [&](std::size_t) {
+    try {
+      make_bricks();
+    } catch (...) {
+      pulse_.stop();
+      output.stop();
+      throw;
+    }
   };
   tbb::task_arena arena(static_cast<int>(jobs_));
   arena.execute([&] { tbb::parallel_for(std::size_t{0}, jobs_, work, tbb::simple_partitioner{}); });

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <new>
 #include <numbers>
 
 #include "function_source_for_test.hpp"
@@ -359,6 +360,20 @@ TEST(Contour, RefusesGridsThatExceedTheBudget) {
   EXPECT_EQ(after.diagnostics().at(0).code, Code::limit_grid_memory);
   EXPECT_FALSE(contour(FunctionSource({{{0, 0, 0}, {1, 1, 1}}, {65535, 2, 2}}, ball), sink, {}, {}, axis));
   EXPECT_EQ(axis.diagnostics().at(0).code, Code::limit_grid);
+}
+
+// Memory may run out in one thread while the others wait for its brick.
+TEST(Contour, EndsWhenAThreadThrows) {
+  const FunctionSource source({.box = {{-1, -1, -1}, {1, 1, 1}}, .nodes = {20, 20, 200}}, [](Vec3 p) {
+    if (p.z < -0.95) throw std::bad_alloc();
+    return std::sin(40 * p.x) + std::sin(40 * p.y);
+  });
+  for (int repetition = 0; repetition < 20; ++repetition) {
+    TriangleMesh mesh;
+    MemoryMeshSink sink(mesh);
+    DiagnosticSink diagnostics;
+    EXPECT_THROW((void)contour(source, sink, {}, {.jobs = 2}, diagnostics), std::bad_alloc);
+  }
 }
 
 }  // namespace

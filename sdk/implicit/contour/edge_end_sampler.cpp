@@ -2,6 +2,8 @@
 #include "edge_end_sampler.hpp"
 
 #include <algorithm>
+#include <cfloat>
+#include <cmath>
 
 #include "bits.hpp"
 
@@ -9,6 +11,13 @@ namespace meso::implicit {
 namespace {
 
 constexpr std::size_t batch = 4096;  // some milliseconds of a dear field
+
+// Signs decide which edges are crossed. A value beside the surface that was computed along another way may contradict
+// its sign by rounding: then it is as good as zero.
+float with_sign(double value, bool negative) {
+  if (std::isnan(value) || (value < 0) == negative) return static_cast<float>(value);
+  return negative ? -FLT_MIN : FLT_MIN;
+}
 
 }  // namespace
 
@@ -67,7 +76,10 @@ void EdgeEndSampler::row(std::int32_t j, std::int32_t k, float* values, std::uin
   const auto offset = static_cast<std::size_t>(row - signs_.data());
   const double* value = values_.data() + first_value_[offset / words_];
   for (std::size_t w = 0; w < words_; ++w)
-    for_each_bit(ends_[offset + w], w, [&](std::size_t i) { values[i] = static_cast<float>(*value++); });
+    for_each_bit(ends_[offset + w], w, [&](std::size_t i) {
+      const bool negative = (row[w] >> (i % 64) & 1) != 0;
+      values[i] = with_sign(*value++, negative);
+    });
 }
 
 }  // namespace meso::implicit

@@ -9,7 +9,7 @@ namespace meso::implicit {
 
 void RootPolish::add(Vec3 p, std::size_t axis, double step, double v0, double v1, std::size_t result) {
   Edge e{.p = p, .step = step, .va = v0, .vb = v1, .result = result, .axis = static_cast<std::uint8_t>(axis)};
-  if (!(v0 < 0)) {
+  if (!std::signbit(v0) || std::isnan(v0)) {  // a float may have rounded a negative value to -0
     std::swap(e.a, e.b);
     std::swap(e.va, e.vb);
   }

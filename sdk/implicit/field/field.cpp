@@ -9,6 +9,7 @@
 #include "meso/expr/expression.hpp"
 #include "meso/expr/nearest.hpp"
 #include "meso/implicit/field_arguments.hpp"
+#include "meso/implicit/flat_term.hpp"
 #include "meso/implicit/surfaces.hpp"
 #include "node.hpp"
 
@@ -152,6 +153,18 @@ std::optional<Field> Field::surface(std::string_view name, DiagnosticSink& sink)
   return Field(leaf(LevelSet{surface_term(*surface), {surface->min, surface->max, false}}, surface->lipschitz));
 }
 
+namespace {
+
+// Where a text has no value the point is outside of it, whatever the field is combined with: min gives its first
+// operand where the second is not a number. Texts that have a value everywhere stay as they are.
+Term outside_where_undefined(const Term& term) {
+  constexpr double far = 1e9, undefined_value = 1e30;
+  if (!interval_of(term, {{-far, -far, -far}, {far, far, far}}).undefined) return term;
+  return min(Term::constant(undefined_value), term);
+}
+
+}  // namespace
+
 std::optional<Field> Field::expression(std::string_view text, DiagnosticSink& sink,
                                        std::span<const Parameter> parameters) {
   const expr::ParseResult parsed = expr::parse_expression(text, LengthUnit::millimeter);
@@ -177,7 +190,7 @@ std::optional<Field> Field::expression(std::string_view text, DiagnosticSink& si
     }
     term_of_name.push_back(meanings[static_cast<std::size_t>(found - known.begin())]);
   }
-  return from_term(Term::from_expression(*parsed.expression, term_of_name));
+  return from_term(outside_where_undefined(Term::from_expression(*parsed.expression, term_of_name)));
 }
 
 Field Field::from_term(const Term& term) { return Field(level_set(term)); }

@@ -5,6 +5,7 @@
 #include "field_suite.hpp"
 
 #include <cctype>
+#include <cmath>
 #include <memory>
 #include <numbers>
 
@@ -114,7 +115,9 @@ std::vector<Subject> named_surfaces() {
 Subject expression(const char* text, Function reference) {
   DiagnosticSink sink;
   const Parameter parameters[] = {{"k", 2.5}};
-  return {text, *Field::expression(text, sink, parameters), std::move(reference)};
+  // No value is outside, far from every level.
+  const auto value = [f = std::move(reference)](Vec3 p) { return std::isnan(f(p)) ? 1e30 : f(p); };
+  return {text, *Field::expression(text, sink, parameters), value};
 }
 
 std::vector<Subject> expressions() {

@@ -154,5 +154,20 @@ TEST(Field, SharedPartsStayShared) {
   expect_box(f.bounds(), {-1, -1, -1}, {1, 1, 1});
 }
 
+// A set does not depend on the order of what it is made of.
+TEST(Expression, WithoutAValueIsOutsideWhateverItIsCombinedWith) {
+  DiagnosticSink sink;
+  const Field half = *Field::expression("-1 - sqrt(x)", sink);  // all points with x >= 0
+  const Field ball = Field::ball();
+  const Vec3 undefined{-0.5, 0, 0}, defined{0.5, 0, 0};
+  EXPECT_LT(union_of(half, ball).value(undefined), 0);
+  EXPECT_LT(union_of(ball, half).value(undefined), 0);
+  EXPECT_GT(intersection_of(half, ball).value(undefined), 0);
+  EXPECT_GT(intersection_of(ball, half).value(undefined), 0);
+  EXPECT_LT(difference_of(ball, half).value(undefined), 0);
+  EXPECT_GT(difference_of(ball, half).value(defined), 0);
+  EXPECT_LT(intersection_of(ball, half).value(defined), 0);
+}
+
 }  // namespace
 }  // namespace meso::implicit

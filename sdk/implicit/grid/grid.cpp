@@ -8,10 +8,20 @@ namespace meso::implicit {
 
 std::array<std::int32_t, 3> nodes_for_total(const Box3& box, double total) {
   const Vec3 size = box.max - box.min;
-  const double per_length = std::cbrt(total / (size.x * size.y * size.z));
+  std::array<std::size_t, 3> order{0, 1, 2};
+  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return size[a] < size[b]; });
+  // Shortest first: what an axis takes more than its share, because it needs two, is missing from the others.
+  // Logarithms, since products of extreme sizes leave the range.
   std::array<std::int32_t, 3> nodes{};
-  for (std::size_t axis = 0; axis < 3; ++axis)
-    nodes[axis] = static_cast<std::int32_t>(std::clamp(std::round(size[axis] * per_length), 2.0, 2147483647.0));
+  double log_left = std::log(total);
+  for (std::size_t i = 0; i < 3; ++i) {
+    double log_volume = 0;
+    for (std::size_t k = i; k < 3; ++k) log_volume += std::log(size[order[k]]);
+    const double per_length = (log_left - log_volume) / static_cast<double>(3 - i);
+    const double count = std::clamp(std::round(std::exp(std::log(size[order[i]]) + per_length)), 2.0, 2147483647.0);
+    nodes[order[i]] = static_cast<std::int32_t>(count);
+    log_left = std::max(0.0, count > 2 ? log_left - (std::log(size[order[i]]) + per_length) : log_left - std::log(2.0));
+  }
   return nodes;
 }
 

@@ -17,7 +17,10 @@ TEST(Grid, EndsAreTheBoxesEndsToTheBit) {
 
 TEST(Grid, TotalIsSharedOutByLength) {
   EXPECT_THAT(nodes_for_total({{-1, -1, -1}, {1, 1, 1}}, 64000), ElementsAre(40, 40, 40));
-  EXPECT_THAT(nodes_for_total({{0, 0, 0}, {1, 2, 4}}, 8), ElementsAre(2, 2, 4));  // never less than two
+  EXPECT_THAT(nodes_for_total({{0, 0, 0}, {1, 2, 4}}, 8), ElementsAre(2, 2, 2));  // never less than two
+  EXPECT_THAT(nodes_for_total({{-1, -1, 0}, {1, 1, 1e-6}}, 200), ElementsAre(10, 10, 2));
+  EXPECT_THAT(nodes_for_total({{-1, -1, 0}, {1, 1, 1e9}}, 1000), ElementsAre(2, 2, 250));
+  EXPECT_THAT(nodes_for_total({{0, 0, 0}, {1e150, 1e150, 1e150}}, 1000), ElementsAre(10, 10, 10));
 }
 
 }  // namespace

@@ -37,7 +37,6 @@ struct SdfReport {
   implicit::Grid grid;
   std::uint64_t points = 0, triangles = 0;
   std::int64_t euler = 0;
-  std::uint64_t undefined = 0;  ///< edges of the grid that the surface crosses where the field has no value
   std::uint64_t bytes = 0;
   std::optional<MeshMeasures> measures;
   struct {

@@ -31,7 +31,8 @@ struct Grid {
 };
 
 /// About `total` nodes over a box, as near to cubes as whole numbers allow: n_i = L_i (total / L_x L_y L_z)^(1/3),
-/// rounded, at least 2. REQUIRES: a box of positive size.
+/// rounded, at least 2; what one axis takes beyond its share the longer ones do without. REQUIRES: a box of positive
+/// size.
 [[nodiscard]] std::array<std::int32_t, 3> nodes_for_total(const Box3& box, double total);
 
 }  // namespace meso::implicit
