@@ -6,10 +6,10 @@
 //   const auto source = compile(gyroid, Grid{.box = {{-1, -1, -1}, {1, 1, 1}}, .nodes = {800, 800, 800}});
 //   contour(*source, ...);
 //
-// Every operation means what Term::value() says, except that elementary functions are our own (within the 4 units in the
-// last place that grants) and that, unless `strict_math`, sums and products may be regrouped: that moves a value
-// by at most 1e-12 of the range that it has in the box. Samples have equal bits for every instruction set, slab and
-// thread, and pruning changes no sign and no value that counts (GridSampler::row).
+// Every operation means what Term::value() says, except that elementary functions are our own (within the 4 units in
+// the last place that grants) and that, unless `strict_math`, sums and products may be regrouped: that moves a
+// value by at most 1e-12 of the range that it has in the box. Samples have equal bits for every instruction set, slab
+// and thread, and pruning changes no sign and no value that counts (GridSampler::row).
 //
 // Compiling costs a few milliseconds and O(n) memory for an n^3 grid; fields with a dear part of x and y alone get
 // tables of n^2 doubles for it, within max_table_bytes. The source keeps its external fields alive.
