@@ -303,13 +303,9 @@ std::optional<LatticePart> lattice_part(const Solids& macrostructure, const eval
     auto body = lattice_body(found->cell, set, {.mesh = mesh}, context.sink);
     if (!body) return {};
     out.body = std::move(*body);
-  } else if (mesh) {
-    context.sink.report(
-        {.code = Code::geometry_not_repeatable, .args = {"triangles of clipped cells do not all close"}});
-    return {};
   } else {
     auto clipped =
-        clipped_lattice_body(found->cell, last, found->body, {.mesh = {}, .reuse = true}, context.run, context.sink);
+        clipped_lattice_body(found->cell, last, found->body, {.mesh = mesh, .reuse = true}, context.run, context.sink);
     if (!clipped) return {};
     out = {std::move(clipped->body), clipped->kept, clipped->crossing};
   }

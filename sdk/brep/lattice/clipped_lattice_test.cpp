@@ -4,12 +4,15 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+#include <map>
 #include <numbers>
 #include <random>
 
 #include "lattice/primitive_field.hpp"
 #include "meso/brep/audit.hpp"
 #include "meso/brep/measure.hpp"
+#include "meso/brep/triangles.hpp"
 
 namespace meso::brep {
 namespace {
@@ -119,6 +122,46 @@ TEST(ClippedLattice, ConcaveBodies) {
   EXPECT_NEAR(made.volume, volume, 4 * error);
 }
 
+/// Directed segments without a partner, and the volume within; triangles without area are failures.
+struct Triangles {
+  std::size_t count = 0, unmatched = 0;
+  double volume = 0;
+};
+Triangles triangles_in(const Body& body) {
+  std::map<std::array<Vec3, 2>, int, decltype([](const auto& a, const auto& b) {
+             const auto key = [](const auto& s) { return std::array{s[0].x, s[0].y, s[0].z, s[1].x, s[1].y, s[1].z}; };
+             return key(a) < key(b);
+           })>
+      segments;
+  Triangles found;
+  visit_triangles(body, [&](std::span<const Triangle> block) {
+    for (const Triangle& t : block) {
+      ++found.count;
+      found.volume += dot(t[0], cross(t[1], t[2])) / 6;
+      EXPECT_GT(norm(cross(t[1] - t[0], t[2] - t[0])), 0);
+      for (std::size_t k = 0; k < 3; ++k) {
+        ++segments[{t[k], t[(k + 1) % 3]}];
+        --segments[{t[(k + 1) % 3], t[k]}];
+      }
+    }
+  });
+  for (const auto& [segment, times] : segments) found.unmatched += times > 0 ? static_cast<std::size_t>(times) : 0;
+  return found;
+}
+
+TEST(ClippedLattice, TrianglesClose) {
+  // In the third the walls all but touch the balls, in the fourth they pass a micrometre beside their middles.
+  for (const Vec3 at : {Vec3{3.7, 3.3, 2.9}, Vec3{2.5, 5, 5}, Vec3{4.099, 4.1001, 2.5}, Vec3{5.001, 5, 7.499}}) {
+    SCOPED_TRACE(at.x);
+    const Made made = clipped({box(at, at + Vec3{5, 5, 5})}, {2, 2, 2}, true, 0, MeshFineness{0.05, 0.5});
+    expect_clean(made);
+    EXPECT_NEAR(made.volume / bcc_cell, 1, 1e-6);
+    const Triangles triangles = triangles_in(made.lattice->body);
+    EXPECT_EQ(triangles.unmatched, 0u);
+    EXPECT_NEAR(triangles.volume / made.volume, 1, 0.05);
+  }
+}
+
 TEST(ClippedLattice, CylinderAndSphere) {
   const TopoDS_Shape rod = BRepPrimAPI_MakeCylinder(gp_Ax2({8.1, 7.7, 1.2}, gp::DZ()), 2.2, 16).Solid();
   const Made in_rod = clipped({rod}, {3, 3, 3});
@@ -139,14 +182,17 @@ TEST(ClippedLattice, CylinderAndSphere) {
 
 TEST(ClippedLattice, ThreadsDoNotShowInTheResult) {
   const std::vector<TopoDS_Shape> body{box({1.3, 1.7, 2.1}, {7, 8, 4})};
-  const Made one = clipped(body, {1, 1, 0}, true, 1), three = clipped(body, {1, 1, 0}, true, 3);
+  const MeshFineness mesh{0.05, 0.5};
+  const Made one = clipped(body, {1, 1, 0}, true, 1, mesh), three = clipped(body, {1, 1, 0}, true, 3, mesh);
   ASSERT_TRUE(one.lattice && three.lattice);
   const Template &a = *one.lattice->body.solids.at(0).outer.geometry,
                  &b = *three.lattice->body.solids.at(0).outer.geometry;
   EXPECT_EQ(a.vertices, b.vertices);
   ASSERT_EQ(a.faces.size(), b.faces.size());
-  for (std::size_t f = 0; f < a.faces.size(); ++f)
+  for (std::size_t f = 0; f < a.faces.size(); ++f) {
     EXPECT_EQ(a.faces[f].moments.volume_moment, b.faces[f].moments.volume_moment);
+    EXPECT_EQ(a.faces[f].mesh.triangles, b.faces[f].mesh.triangles);
+  }
 }
 
 TEST(ClippedLattice, StopsWhenAsked) {

@@ -35,7 +35,7 @@ class Builder {
 
   /// Matches the edges; false if the solid is not closed in itself.
   bool add_kind(const TopoDS_Shape& solid);
-  void add_meshes(const MeshFineness& fineness);
+  void add_meshes(const MeshFineness& fineness, const RunOptions& run);
   /// False if a solid is not a manifold.
   [[nodiscard]] bool add_faces(const RunOptions& run);
 
@@ -45,6 +45,8 @@ class Builder {
     TopTools_IndexedMapOfShape edges;  // in the order of shell_to_template
     std::vector<OrbitMatcher::Match> matches;
     std::vector<std::uint32_t> face_lumps;
+
+    [[nodiscard]] TemplateEdges template_edges() const { return {shell, edges, matches}; }
   };
 
   [[nodiscard]] std::vector<Template> own_templates(const RunOptions& run) const;
@@ -105,10 +107,10 @@ bool Builder::add_kind(const TopoDS_Shape& solid) {
   return source.face_lumps.size() == faces;  // every face bounds one solid
 }
 
-void Builder::add_meshes(const MeshFineness& fineness) {
+void Builder::add_meshes(const MeshFineness& fineness, const RunOptions& run) {
   std::vector<TemplateEdges> edges;
-  for (const Source& source : sources_) edges.push_back({source.shell, source.edges, source.matches});
-  polygons_ = mesh_alike(edges, geometry_, fineness);
+  for (const Source& source : sources_) edges.push_back(source.template_edges());
+  polygons_ = mesh_alike(edges, geometry_, fineness, run);
 }
 
 void Builder::classify(CellFace& face, const FaceTemplate& value, const TopoDS_Face& shape) const {
@@ -145,7 +147,7 @@ std::vector<Template> Builder::own_templates(const RunOptions& run) const {
   std::vector<Template> own(sources_.size());
   const bool done = in_parallel(sources_.size(), run, [&](std::size_t, std::size_t k) {
     try {
-      own[k] = shell_to_template(sources_[k].shell, polygons_.has_value());
+      own[k] = shell_to_template(sources_[k].shell, false);
       return true;
     } catch (const Standard_Failure&) {
       return false;
@@ -169,8 +171,8 @@ bool Builder::add_faces(const RunOptions& run) {
           const OrbitMatcher::Match& match = source.matches[use.edge];
           use = {.edge = match.edge, .offset = match.offset, .reversed = use.reversed != match.flipped};
         }
-      if (polygons_ && !share_points(value, geometry_, *polygons_, 20 * tolerance_))
-        throw Standard_Failure("a face has not the points of its edges");
+      if (polygons_)
+        value.mesh = named_mesh(TopoDS::Face(it.Current()), source.template_edges(), geometry_, *polygons_).value();
       const Vec3 moment = value.moments.volume_moment;
       kind.volume += (moment.x + moment.y + moment.z) / 3;
       CellFace face{.face = static_cast<std::uint32_t>(geometry_.faces.size())};
@@ -277,7 +279,7 @@ std::optional<Quotient> build_quotient(const CellShape& cell, const std::vector<
       if (run.should_stop()) throw Standard_Failure("stopped");
       if (!builder.add_kind(solid)) fault = "a face of the unit cell bounds no solid";
     }
-    if (options.mesh) builder.add_meshes(*options.mesh);
+    if (options.mesh) builder.add_meshes(*options.mesh, run);
     if (!builder.add_faces(run)) fault = "the unit cell is not a manifold inside its box";
     if (fault.empty()) find_natural_faces(quotient);
   } catch (const Standard_Failure& failure) {

@@ -9,10 +9,15 @@
 #include <IMeshData_Edge.hxx>
 #include <IMeshData_Model.hxx>
 #include <IMeshTools_CurveTessellator.hxx>
+#include <Poly_PolygonOnTriangulation.hxx>
+#include <algorithm>
+#include <cmath>
+#include <map>
 #include <tuple>
 
 #include "meso/brep/instance_map.hpp"
 #include "meso/brep/placement.hpp"
+#include "stop_watch.hpp"
 
 namespace meso::brep {
 namespace {
@@ -20,18 +25,18 @@ namespace {
 /// Points and parameters of one edge along its own curve, as BRepMesh asks for them: counted from 1, ends included.
 class GivenPoints : public IMeshTools_CurveTessellator {
  public:
-  /// `inner` are the points between the ends, none for a degenerate edge.
+  /// `inner` are the points between the ends in the order of the curve, none for a degenerate edge.
   GivenPoints(const TopoDS_Edge& edge, const std::vector<Vec3>& inner) {
     double first = 0, last = 0;
     BRep_Tool::Range(edge, first, last);
     points_.emplace_back(first, BRep_Tool::Pnt(TopExp::FirstVertex(edge)));
-    points_.emplace_back(last, BRep_Tool::Pnt(TopExp::LastVertex(edge)));
     for (const Vec3 p : inner) {
       const GeomAPI_ProjectPointOnCurve foot(to_pnt(p), BRep_Tool::Curve(edge, first, last), first, last);
-      if (foot.NbPoints() == 0) throw Standard_Failure("equal edges are not equal");
+      if (foot.NbPoints() == 0 || foot.LowerDistanceParameter() <= points_.back().first)
+        throw Standard_Failure("equal edges are not equal");
       points_.emplace_back(foot.LowerDistanceParameter(), to_pnt(p));
     }
-    std::sort(points_.begin(), points_.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+    points_.emplace_back(last, BRep_Tool::Pnt(TopExp::LastVertex(edge)));
   }
   Standard_Integer PointsNb() const override { return static_cast<Standard_Integer>(points_.size()); }
   Standard_Boolean Value(Standard_Integer index, gp_Pnt& point, Standard_Real& parameter) const override {
@@ -42,6 +47,18 @@ class GivenPoints : public IMeshTools_CurveTessellator {
  private:
   std::vector<std::pair<double, gp_Pnt>> points_;
 };
+
+/// The points between the ends of an edge of a kind, along that edge.
+std::vector<Vec3> points_of(const OrbitMatcher::Match& match, const Template& geometry, const EdgePolygons& polygons) {
+  std::vector<Vec3> points = polygons[match.edge];
+  for (Vec3& p : points) p += cell_origin(geometry, match.offset);
+  if (match.flipped) std::ranges::reverse(points);
+  return points;
+}
+
+const OrbitMatcher::Match& match_of(const TemplateEdges& kind, const TopoDS_Edge& edge) {
+  return kind.matches.at(static_cast<std::size_t>(kind.edges.FindIndex(edge) - 1));
+}
 
 /// BRepMesh divides each edge by what its faces need; here the division is given.
 class GivenEdges : public IMeshTools_ModelAlgo {
@@ -63,11 +80,9 @@ class GivenEdges : public IMeshTools_ModelAlgo {
 
  private:
   [[nodiscard]] Handle(IMeshTools_CurveTessellator) tessellator(const TopoDS_Edge& edge) const {
-    if (BRep_Tool::Degenerated(edge)) return new GivenPoints(edge, {});
-    const OrbitMatcher::Match& match = kind_.matches.at(static_cast<std::size_t>(kind_.edges.FindIndex(edge) - 1));
-    std::vector<Vec3> points = polygons_[match.edge];
-    for (Vec3& p : points) p += cell_origin(geometry_, match.offset);
-    return new GivenPoints(edge, points);
+    const TopoDS_Edge forward = TopoDS::Edge(edge.Oriented(TopAbs_FORWARD));
+    if (BRep_Tool::Degenerated(edge)) return new GivenPoints(forward, {});
+    return new GivenPoints(forward, points_of(match_of(kind_, edge), geometry_, polygons_));
   }
 
   const TemplateEdges& kind_;
@@ -75,70 +90,146 @@ class GivenEdges : public IMeshTools_ModelAlgo {
   const EdgePolygons& polygons_;
 };
 
-std::vector<Vec3> divide(const TopoDS_Edge& edge, const MeshFineness& fineness) {
+/// `times`: how often the edge has been found too coarse.
+std::vector<Vec3> divide(const TopoDS_Edge& edge, const MeshFineness& fineness, int times) {
   const BRepAdaptor_Curve curve(edge);
   const bool straight = curve.GetType() == GeomAbs_Line;
   const bool closed = TopExp::FirstVertex(edge).IsSame(TopExp::LastVertex(edge));
   // A closed edge of fewer than four segments would fold its faces flat.
-  const GCPnts_TangentialDeflection points(curve, fineness.angle, fineness.deflection, straight ? 2 : closed ? 5 : 3);
+  const int segments = (straight ? 1 : closed ? 4 : 2) << times;
+  const GCPnts_TangentialDeflection points(curve, std::ldexp(fineness.angle, -times),
+                                           std::ldexp(fineness.deflection, -2 * times), segments + 1);
   std::vector<Vec3> inner;
   for (int i = 2; i < points.NbPoints(); ++i) inner.push_back(to_vec(points.Value(i)));
   return inner;
 }
 
-}  // namespace
-
-EdgePolygons mesh_alike(const std::vector<TemplateEdges>& kinds, const Template& geometry,
-                        const MeshFineness& fineness) {
-  EdgePolygons polygons(geometry.edges.size());
-  std::vector<bool> divided(geometry.edges.size());
-  for (const TemplateEdges& kind : kinds)
-    for (std::size_t i = 0; i < kind.matches.size(); ++i) {
-      const std::uint32_t orbit = kind.matches[i].edge;  // first met: that edge is the template's own
-      if (divided[orbit] || geometry.edges[orbit].degenerate) continue;
-      divided[orbit] = true;
-      polygons[orbit] = divide(TopoDS::Edge(kind.edges(static_cast<int>(i) + 1)), fineness);
-    }
-  IMeshTools_Parameters parameters;
-  parameters.Deflection = fineness.deflection;
-  parameters.Angle = fineness.angle;
-  parameters.InParallel = Standard_True;
-  for (const TemplateEdges& kind : kinds) {
-    const Handle(BRepMesh_Context) context = new BRepMesh_Context;
-    context->SetEdgeDiscret(new GivenEdges(kind, geometry, polygons));
-    BRepMesh_IncrementalMesh mesher;
-    mesher.SetShape(kind.shell);
-    mesher.ChangeParameters() = parameters;
-    mesher.Perform(context);
-  }
-  return polygons;
+void mesh_one(const TemplateEdges& kind, const Template& geometry, const EdgePolygons& polygons,
+              const MeshFineness& fineness, const RunOptions& run) {
+  const Handle(StopWatch) watch = new StopWatch(run);
+  const Handle(BRepMesh_Context) context = new BRepMesh_Context;
+  context->SetEdgeDiscret(new GivenEdges(kind, geometry, polygons));
+  BRepMesh_IncrementalMesh mesher;
+  mesher.SetShape(kind.shell);
+  mesher.ChangeParameters().Deflection = fineness.deflection;
+  mesher.ChangeParameters().Angle = fineness.angle;
+  mesher.ChangeParameters().InParallel = run.jobs != 1;
+  BRepTools::Clean(kind.shell);
+  mesher.Perform(context, watch->Start());
 }
 
-bool share_points(FaceTemplate& face, const Template& geometry, const EdgePolygons& polygons, double tolerance) {
-  struct Shared {
-    Vec3 at;
-    MeshPoint name;
-    bool met = false;
-  };
-  std::vector<Shared> shared;
-  const auto add = [&](Vec3 point, const Index3& offset) {
-    shared.push_back({.at = point + cell_origin(geometry, offset), .name = {point, offset}});
-  };
-  for (const auto& loop : face.loops)
-    for (const Coedge& use : loop) {
-      const EdgeTemplate& edge = geometry.edges[use.edge];
-      for (const std::size_t k : {0, 1}) add(geometry.vertices[edge.vertex[k]], use.offset + edge.vertex_offset[k]);
-      for (const Vec3 p : polygons[use.edge]) add(p, use.offset);
-    }
-  for (MeshPoint& p : face.mesh.points) {
-    const Vec3 at = p.point;
-    for (Shared& s : shared) {
-      if (norm(s.at - at) > tolerance) continue;
-      p = s.name;
-      s.met = true;
-    }
+using PointName = std::pair<std::array<double, 3>, Index3>;
+
+PointName name_of(const MeshPoint& p) { return {{p.point.x, p.point.y, p.point.z}, p.offset}; }
+
+/// Segments that have been gone along once more in one direction than in the other.
+class Segments {
+ public:
+  void add(const MeshPoint& from, const MeshPoint& to, int times) {
+    const PointName a = name_of(from), b = name_of(to);
+    if (a == b) return;
+    (a < b ? counts_[{a, b}] : counts_[{b, a}]) += a < b ? times : -times;
   }
-  return std::all_of(shared.begin(), shared.end(), [](const Shared& s) { return s.met; });
+  [[nodiscard]] bool cancel() const {
+    return std::ranges::all_of(counts_, [](const auto& segment) { return segment.second == 0; });
+  }
+
+ private:
+  std::map<std::pair<PointName, PointName>, int> counts_;
+};
+
+}  // namespace
+
+EdgePolygons mesh_alike(const std::vector<TemplateEdges>& kinds, const Template& geometry, const MeshFineness& fineness,
+                        const RunOptions& run) {
+  constexpr int most_divisions = 5;
+  EdgePolygons polygons(geometry.edges.size());
+  std::vector<int> divisions(geometry.edges.size(), 0);
+  std::vector<bool> changed(geometry.edges.size(), true);
+  for (int round = 0; round <= most_divisions; ++round) {
+    std::vector<bool> divided(geometry.edges.size());
+    for (const TemplateEdges& kind : kinds)
+      for (std::size_t i = 0; i < kind.matches.size(); ++i) {
+        const std::uint32_t orbit = kind.matches[i].edge;
+        if (divided[orbit] || !changed[orbit] || geometry.edges[orbit].degenerate) continue;
+        divided[orbit] = true;
+        polygons[orbit] = divide(TopoDS::Edge(kind.edges(static_cast<int>(i) + 1).Oriented(TopAbs_FORWARD)), fineness,
+                                 divisions[orbit]);
+      }
+    std::vector<bool> coarse(geometry.edges.size());
+    bool done = true;
+    for (const TemplateEdges& kind : kinds) {
+      if (run.should_stop()) throw Standard_Failure("stopped");
+      const bool touched = std::ranges::any_of(kind.matches, [&](const auto& m) { return bool{changed[m.edge]}; });
+      if (!touched) continue;
+      mesh_one(kind, geometry, polygons, fineness, run);
+      for (TopoDS_Iterator it(kind.shell); it.More(); it.Next()) {
+        const TopoDS_Face& face = TopoDS::Face(it.Value());
+        if (named_mesh(face, kind, geometry, polygons)) continue;
+        done = false;
+        for (TopExp_Explorer edge(face, TopAbs_EDGE); edge.More(); edge.Next())
+          coarse[match_of(kind, TopoDS::Edge(edge.Current())).edge] = true;
+      }
+    }
+    if (done) return polygons;
+    changed = coarse;
+    for (std::size_t e = 0; e < coarse.size(); ++e) divisions[e] += coarse[e];
+  }
+  throw Standard_Failure("a face cannot be divided into triangles");
+}
+
+std::optional<Triangulation> named_mesh(const TopoDS_Face& face, const TemplateEdges& kind, const Template& geometry,
+                                        const EdgePolygons& polygons) {
+  TopLoc_Location location;
+  const Handle(Poly_Triangulation) mesh = BRep_Tool::Triangulation(face, location);
+  if (mesh.IsNull()) return {};
+  Triangulation out;
+  for (int i = 1; i <= mesh->NbNodes(); ++i)
+    out.points.push_back({.point = to_vec(mesh->Node(i).Transformed(location.Transformation()))});
+  std::vector<std::pair<std::vector<std::uint32_t>, bool>> borders;
+  for (TopExp_Explorer it(face, TopAbs_EDGE); it.More(); it.Next()) {
+    const TopoDS_Edge& edge = TopoDS::Edge(it.Current());
+    const Handle(Poly_PolygonOnTriangulation) polygon = BRep_Tool::PolygonOnTriangulation(edge, mesh, location);
+    if (polygon.IsNull()) return {};
+    const OrbitMatcher::Match& match = match_of(kind, edge);
+    const EdgeTemplate& orbit = geometry.edges[match.edge];
+    const auto& [nodes, reversed] =
+        borders.emplace_back(std::vector<std::uint32_t>{}, edge.Orientation() == TopAbs_REVERSED);
+    for (int k = 1; k <= polygon->NbNodes(); ++k)
+      borders.back().first.push_back(static_cast<std::uint32_t>(polygon->Node(k) - 1));
+    const auto end = [&](std::size_t k) {
+      return MeshPoint{geometry.vertices[orbit.vertex[k]], match.offset + orbit.vertex_offset[k]};
+    };
+    if (orbit.degenerate) {
+      for (const std::uint32_t node : nodes) out.points[node] = end(0);
+      continue;
+    }
+    const std::vector<Vec3>& inner = polygons[match.edge];
+    if (nodes.size() != inner.size() + 2) return {};
+    out.points[nodes.front()] = end(match.flipped ? 1 : 0);
+    out.points[nodes.back()] = end(match.flipped ? 0 : 1);
+    for (std::size_t k = 0; k < inner.size(); ++k)
+      out.points[nodes[k + 1]] = {inner[match.flipped ? inner.size() - 1 - k : k], match.offset};
+  }
+  const bool flip = (face.Orientation() == TopAbs_REVERSED) != location.Transformation().IsNegative();
+  Segments segments;
+  for (int i = 1; i <= mesh->NbTriangles(); ++i) {
+    int a = 0, b = 0, c = 0;
+    mesh->Triangle(i).Get(a, b, c);
+    if (flip) std::swap(b, c);
+    const std::array<std::uint32_t, 3> t{static_cast<std::uint32_t>(a - 1), static_cast<std::uint32_t>(b - 1),
+                                         static_cast<std::uint32_t>(c - 1)};
+    bool folded = false;
+    for (std::size_t k = 0; k < 3; ++k)
+      folded = folded || name_of(out.points[t[k]]) == name_of(out.points[t[(k + 1) % 3]]);
+    for (std::size_t k = 0; k < 3; ++k) segments.add(out.points[t[k]], out.points[t[(k + 1) % 3]], 1);
+    if (!folded) out.triangles.push_back(t);
+  }
+  for (const auto& [nodes, reversed] : borders)
+    for (std::size_t k = 0; k + 1 < nodes.size(); ++k)
+      segments.add(out.points[nodes[k]], out.points[nodes[k + 1]], reversed ? 1 : -1);
+  if (!segments.cancel()) return {};
+  return out;
 }
 
 }  // namespace meso::brep

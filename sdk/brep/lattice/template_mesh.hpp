@@ -3,12 +3,17 @@
 // Triangulates the solids of all kinds of cells so that edges that are one modulo the lattice get the same points.
 // Private.
 //
-//   const EdgePolygons polygons = mesh_alike(kinds, edge_count, fineness);   // leaves triangulations on the faces
-//   share_points(face, geometry, polygons, tolerance);                       // for every face read from them
+//   const EdgePolygons polygons = mesh_alike(kinds, geometry, fineness, run);  // leaves triangulations on the faces
+//   face.mesh = named_mesh(shape, face, kind, geometry, polygons);            // for every face read from them
+//
+// Each edge is divided once. A face that cannot be meshed within polygons so coarse has those of its edges divided
+// further, wherever they stand.
 
+#include <optional>
 #include <vector>
 
 #include "lattice/orbit_matcher.hpp"
+#include "meso/base/run_options.hpp"
 #include "meso/brep/lattice_body.hpp"
 #include "occt.hpp"
 
@@ -23,13 +28,14 @@ struct TemplateEdges {
 /// Per edge of the template: the points between its ends.
 using EdgePolygons = std::vector<std::vector<Vec3>>;
 
-/// Throws Standard_Failure.
+/// Throws Standard_Failure, also where the run is to stop.
 [[nodiscard]] EdgePolygons mesh_alike(const std::vector<TemplateEdges>& kinds, const Template& geometry,
-                                      const MeshFineness& fineness);
+                                      const MeshFineness& fineness, const RunOptions& run);
 
-/// Names every point of the face's mesh that is on an edge or vertex by that edge's own point, so that neighbours agree
-/// on it bit for bit. False if the mesh does not have all of them.
-[[nodiscard]] bool share_points(FaceTemplate& face, const Template& geometry, const EdgePolygons& polygons,
-                                double tolerance);
+/// The triangulation of a face of `kind`. Every point on an edge or vertex is named by that edge's own point, so that
+/// neighbours agree on it bit for bit; triangles that this folds up are left out. Empty if the triangles' border is not
+/// exactly the polygons of the edges.
+[[nodiscard]] std::optional<Triangulation> named_mesh(const TopoDS_Face& face, const TemplateEdges& kind,
+                                                      const Template& geometry, const EdgePolygons& polygons);
 
 }  // namespace meso::brep
