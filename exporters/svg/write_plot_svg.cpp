@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "axis.hpp"
+#include "meso/base/xml_text.hpp"
 
 namespace meso {
 namespace {
@@ -26,25 +27,8 @@ std::string number(double value) {
   return {text.data(), end};
 }
 
-std::string escaped(std::string_view text) {
-  std::string out;
-  for (const char c : text) {
-    if (c == '&')
-      out += "&amp;";
-    else if (c == '<')
-      out += "&lt;";
-    else if (c == '>')
-      out += "&gt;";
-    else if (c == '"')
-      out += "&quot;";
-    else
-      out += c;
-  }
-  return out;
-}
-
 std::string text_at(double x, double y, std::string_view attributes, std::string_view text) {
-  return "<text x=\"" + number(x) + "\" y=\"" + number(y) + "\"" + std::string(attributes) + ">" + escaped(text) +
+  return "<text x=\"" + number(x) + "\" y=\"" + number(y) + "\"" + std::string(attributes) + ">" + escaped_text(text) +
          "</text>\n";
 }
 
@@ -149,7 +133,7 @@ std::string write_plot_svg(const PlotSpec& plot) {
                     "\" width=\"" + number(width) + "\" height=\"" + number(height) +
                     "\" role=\"img\" font-family=\"system-ui, 'Segoe UI', 'DejaVu Sans', sans-serif\" "
                     "font-size=\"13\">\n<title>" +
-                    escaped(plot.title) + "</title>\n<rect width=\"100%\" height=\"100%\" fill=\"#ffffff\"/>\n";
+                    escaped_text(plot.title) + "</title>\n<rect width=\"100%\" height=\"100%\" fill=\"#ffffff\"/>\n";
   out += text_at(left, 32, " font-size=\"18\" font-weight=\"600\" fill=\"#15191d\"", plot.title);
   out += legend(plot.series);
   out += text_at(16, top - 14, " fill=\"#4a5157\"", plot.y_label);

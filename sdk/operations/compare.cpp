@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "meso/operations/compare.hpp"
 
+#include "meso/base/xml_text.hpp"
 #include "meso/brep/triangles.hpp"
 #include "meso/export_step/write_step.hpp"
 #include "meso/export_stl/write_stl.hpp"
@@ -52,30 +53,6 @@ std::optional<std::uint64_t> macro_bytes(const eval::Evaluation& evaluation, Dia
   return total;
 }
 
-/// As the value of an attribute in double or single quotes.
-std::string escaped(std::string_view text) {
-  std::string out;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        out += "&amp;";
-        break;
-      case '<':
-        out += "&lt;";
-        break;
-      case '"':
-        out += "&quot;";
-        break;
-      case '\'':
-        out += "&apos;";
-        break;
-      default:
-        out += c;
-    }
-  }
-  return out;
-}
-
 }  // namespace
 
 std::optional<ComparisonRow> compare(const fs::path& document, const MakeOptions& options, DiagnosticSink& sink) {
@@ -118,7 +95,7 @@ std::optional<std::string> document_with_parameter(const fs::path& document, con
     if (parameter.id.text != id) continue;
     const SourceSpan span = read->source.span(parameter.id_in_source, "value");
     std::string text = read->source.text();
-    return text.replace(span.offset, span.length, escaped(value));
+    return text.replace(span.offset, span.length, escaped_attribute(value));
   }
   sink.report({.code = Code::usage, .args = {"the document has no parameter '" + id + "'"}});
   return std::nullopt;

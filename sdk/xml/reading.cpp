@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "characters.hpp"
+#include "meso/base/xml_text.hpp"
 #include "meso/expr/nearest.hpp"
 #include "write_text.hpp"
 

@@ -5,6 +5,7 @@
 #include <cassert>
 
 #include "characters.hpp"
+#include "meso/base/xml_text.hpp"
 #include "value_text.hpp"
 #include "write_text.hpp"
 

@@ -7,8 +7,6 @@
 
 namespace meso::xml {
 
-[[nodiscard]] std::string escaped_attribute(std::string_view value);
-[[nodiscard]] std::string escaped_text(std::string_view value);
 /// White space runs as one space, none at the ends: the canonical spelling of an expression.
 [[nodiscard]] std::string collapsed(std::string_view text);
 /// At most 100 bytes of a text and "...", for messages.
