@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "meso/implicit/contour.hpp"
 
+#include <tbb/global_control.h>
 #include <tbb/info.h>
 #include <tbb/parallel_for.h>
 #include <tbb/partitioner.h>
@@ -23,6 +24,41 @@ namespace {
 // With the plane below it, a slab of 16.
 constexpr std::size_t brick_planes = 15;
 
+bool fits(const Grid& grid, std::uint64_t bytes, std::string_view purpose, const RunOptions& run,
+          DiagnosticSink& diagnostics) {
+  if (bytes <= run.max_memory_bytes) return true;
+  const auto mebibytes = [](std::uint64_t n) { return std::to_string((n + (std::uint64_t{1} << 20) - 1) >> 20); };
+  diagnostics.report({.code = Code::limit_grid_memory,
+                      .args = {std::to_string(grid.node_count()), mebibytes(bytes), std::string(purpose),
+                               mebibytes(run.max_memory_bytes)}});
+  return false;
+}
+
+std::size_t bricks_of(const Grid& grid) {
+  return (static_cast<std::size_t>(grid.nodes[2]) + brick_planes) / brick_planes;
+}
+
+// No more threads than TBB has: it would say so on standard error, and they would take turns.
+std::size_t jobs_of(const RunOptions& run, std::size_t bricks) {
+  const std::size_t wanted = run.jobs == 0 ? static_cast<std::size_t>(tbb::info::default_concurrency()) : run.jobs;
+  return std::min(
+      {bricks, wanted, tbb::global_control::active_value(tbb::global_control::parameter::max_allowed_parallelism)});
+}
+
+// What is known before the start: planes of samples and signs for each thread, and the record of a surface that every
+// row crosses four times.
+bool memory_fits(const Grid& grid, bool signs_only, const RunOptions& run, DiagnosticSink& diagnostics) {
+  const auto nx = static_cast<std::uint64_t>(grid.nodes[0]), ny = static_cast<std::uint64_t>(grid.nodes[1]),
+             nz = static_cast<std::uint64_t>(grid.nodes[2]);
+  const std::size_t jobs = jobs_of(run, bricks_of(grid));
+  const std::uint64_t plane_of_signs = (nx / 64 + 1) * ny * sizeof(std::uint64_t);
+  const std::uint64_t thread = SampleRows::bytes(nx, ny) + (signs_only ? 2 * (brick_planes + 1) : 2) * plane_of_signs;
+  const std::uint64_t record = (ny + 1) * (nz + 1) * (sizeof(RowCounts) + 4 * sizeof(std::uint16_t));
+  const std::uint64_t shared = (nx + ny + nz) * sizeof(double) + bricks_of(grid) * sizeof(BrickRecord) + record;
+  return fits(grid, jobs * thread + shared,
+              "contouring with " + std::to_string(jobs) + (jobs == 1 ? " thread" : " threads"), run, diagnostics);
+}
+
 class Contouring {
  public:
   Contouring(const GridSource& source, MeshSink& sink, const ContourOptions& options, const RunOptions& run,
@@ -33,7 +69,7 @@ class Contouring {
         run_(run),
         diagnostics_(diagnostics),
         layout_(source.grid()),
-        bricks_((layout_.nz + brick_planes) / brick_planes),
+        bricks_(bricks_of(source.grid())),
         jobs_(jobs_of(run, bricks_)),
         records_(bricks_),
         first_vertex_(bricks_ + 1),
@@ -44,8 +80,13 @@ class Contouring {
  private:
   template <class Pass, class Brick>
   bool for_each_brick(OrderedOutput& output, Pass make_pass, Brick do_brick);
-  bool grid_fits();
-  bool fits(std::uint64_t bytes, std::string_view purpose);
+  bool fits(std::uint64_t bytes, std::string_view purpose) {
+    return implicit::fits(source_.grid(), bytes, purpose, run_, diagnostics_);
+  }
+  OrderedOutput output(bool (MeshSink::*write)(std::string_view)) {
+    return {[this, write](std::string_view bytes) { return (sink_.*write)(bytes); }, jobs_,
+            run_.max_memory_bytes / (8 * jobs_)};
+  }
   bool vertex_pass();
   bool number_vertices();
   bool face_pass();
@@ -54,10 +95,6 @@ class Contouring {
   [[nodiscard]] std::size_t first_plane(std::size_t brick) const { return brick * brick_planes; }
   [[nodiscard]] std::size_t last_plane(std::size_t brick) const {
     return std::min(first_plane(brick) + brick_planes, layout_.nz + 1);
-  }
-  static std::size_t jobs_of(const RunOptions& run, std::size_t bricks) {
-    const auto cores = static_cast<std::size_t>(tbb::info::default_concurrency());
-    return std::min(bricks, run.jobs == 0 ? cores : std::size_t{run.jobs});
   }
 
   const GridSource& source_;
@@ -69,7 +106,7 @@ class Contouring {
   std::size_t bricks_, jobs_;
   std::vector<BrickRecord> records_;
   std::vector<std::uint64_t> first_vertex_;
-  std::atomic<std::uint64_t> recorded_bytes_{0}, triangles_{0};
+  std::atomic<std::uint64_t> recorded_bytes_{0}, sampler_bytes_{0}, triangles_{0};
   Pulse pulse_;
 };
 
@@ -104,27 +141,8 @@ bool Contouring::for_each_brick(OrderedOutput& output, Pass make_pass, Brick do_
   return !pulse_.stopped() && !output.failed();
 }
 
-bool Contouring::fits(std::uint64_t bytes, std::string_view purpose) {
-  if (bytes <= run_.max_memory_bytes) return true;
-  const auto mebibytes = [](std::uint64_t n) { return std::to_string((n + (std::uint64_t{1} << 20) - 1) >> 20); };
-  diagnostics_.report({.code = Code::limit_grid_memory,
-                       .args = {std::to_string(source_.grid().node_count()), mebibytes(bytes), std::string(purpose),
-                                mebibytes(run_.max_memory_bytes)}});
-  return false;
-}
-
-// What is known before the start: planes of samples and signs for each thread, and the record of a surface that every
-// row crosses four times.
-bool Contouring::grid_fits() {
-  const std::uint64_t plane_of_signs = 8 * layout_.words * layout_.ny;
-  const std::uint64_t thread =
-      SampleRows::bytes(layout_) + (source_.signs_only() ? 2 * (brick_planes + 1) : 2) * plane_of_signs;
-  const std::uint64_t record = (layout_.ny + 1) * (layout_.nz + 1) * (sizeof(RowCounts) + 4 * sizeof(std::uint16_t));
-  return fits(jobs_ * thread + record, "contouring with " + std::to_string(jobs_) + " threads");
-}
-
 bool Contouring::vertex_pass() {
-  OrderedOutput output([&](std::string_view bytes) { return sink_.write_points(bytes); }, jobs_);
+  OrderedOutput output = this->output(&MeshSink::write_points);
   pulse_.begin("vertices");
   return for_each_brick(
       output, [&] { return VertexPass(layout_, source_, sink_, options_.polish, [&] { return pulse_.check(); }); },
@@ -134,7 +152,8 @@ bool Contouring::vertex_pass() {
           return pulse_.beat();
         });
         recorded_bytes_ += records_[brick].bytes();
-        if (recorded_bytes_ > run_.max_memory_bytes) pulse_.stop();
+        sampler_bytes_ += pass.grown_by();
+        if (recorded_bytes_ + sampler_bytes_ > run_.max_memory_bytes) pulse_.stop();
       });
 }
 
@@ -150,7 +169,7 @@ bool Contouring::number_vertices() {
 }
 
 bool Contouring::face_pass() {
-  OrderedOutput output([&](std::string_view bytes) { return sink_.write_triangles(bytes); }, jobs_);
+  OrderedOutput output = this->output(&MeshSink::write_triangles);
   pulse_.begin("triangles");
   return for_each_brick(
       output, [&] { return FacePass(layout_, sink_); },
@@ -167,14 +186,14 @@ bool Contouring::face_pass() {
 
 // Where the sink has failed, its owner reports.
 std::nullopt_t Contouring::stopped() {
-  if (fits(recorded_bytes_, "the record of its surface") && pulse_.stopped())
+  if (fits(recorded_bytes_ + sampler_bytes_, "the record of its surface") && pulse_.stopped())
     diagnostics_.report({.code = pulse_.out_of_time() ? Code::limit_time : Code::cancelled});
   return std::nullopt;
 }
 
 std::optional<ContourReport> Contouring::run() {
-  if (!grid_fits()) return std::nullopt;
   if (!sink_.begin() || !vertex_pass()) return stopped();
+  sampler_bytes_ = 0;
   if (!number_vertices()) return std::nullopt;
   if (!sink_.begin_triangles(first_vertex_.back()) || !face_pass()) return stopped();
   if (!sink_.finish(triangles_)) return std::nullopt;
@@ -231,9 +250,14 @@ std::optional<ContourReport> contour_without_slivers(const GridSource& source, M
 
 }  // namespace
 
+bool check_grid(const Grid& grid, const RunOptions& run, DiagnosticSink& diagnostics) {
+  return check_nodes(grid, diagnostics) && memory_fits(grid, false, run, diagnostics);
+}
+
 std::optional<ContourReport> contour(const GridSource& source, MeshSink& sink, const ContourOptions& options,
                                      const RunOptions& run, DiagnosticSink& diagnostics) {
   if (!check_nodes(source.grid(), diagnostics)) return std::nullopt;
+  if (!memory_fits(source.grid(), source.signs_only(), run, diagnostics)) return std::nullopt;
   const auto start = std::chrono::steady_clock::now();
   auto report = options.collapse_slivers ? contour_without_slivers(source, sink, options, run, diagnostics)
                                          : Contouring(source, sink, options, run, diagnostics).run();

@@ -362,6 +362,25 @@ TEST(Contour, RefusesGridsThatExceedTheBudget) {
   EXPECT_EQ(axis.diagnostics().at(0).code, Code::limit_grid);
 }
 
+TEST(Contour, BricksThatMayNotHoldMuchWaitForTheirTurn) {
+  const tbb::global_control threads(tbb::global_control::max_allowed_parallelism, 4);
+  const FunctionSource source(cube(100), noise);
+  const TriangleMesh one = contour_of(source, {}, {.jobs = 1}).mesh;
+  // Of four threads each may hold 5 MiB; a brick has 16.
+  const TriangleMesh four = contour_of(source, {}, {.jobs = 4, .max_memory_bytes = std::uint64_t{160} << 20}).mesh;
+  EXPECT_EQ(four.points, one.points);
+  EXPECT_EQ(four.triangles, one.triangles);
+}
+
+TEST(Contour, ChecksAGridBeforeAFieldIsThere) {
+  DiagnosticSink good, memory, nodes;
+  EXPECT_TRUE(check_grid(cube(100), {}, good));
+  EXPECT_FALSE(check_grid(cube(40000), {.max_memory_bytes = 1u << 26}, memory));
+  EXPECT_EQ(memory.diagnostics().at(0).code, Code::limit_grid_memory);
+  EXPECT_FALSE(check_grid({{{0, 0, 0}, {1, 1, 1}}, {2, 1 << 25, 2}}, {}, nodes));
+  EXPECT_EQ(nodes.diagnostics().at(0).code, Code::limit_grid);
+}
+
 // Memory may run out in one thread while the others wait for its brick.
 TEST(Contour, EndsWhenAThreadThrows) {
   const FunctionSource source({.box = {{-1, -1, -1}, {1, 1, 1}}, .nodes = {20, 20, 200}}, [](Vec3 p) {

@@ -2,6 +2,7 @@
 #include "edge_end_sampler.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cfloat>
 #include <cmath>
 
@@ -14,8 +15,8 @@ constexpr std::size_t batch = 4096;  // some milliseconds of a dear field
 
 // Signs decide which edges are crossed. A value beside the surface that was computed along another way may contradict
 // its sign by rounding: then it is as good as zero.
-float with_sign(double value, bool negative) {
-  if (std::isnan(value) || (value < 0) == negative) return static_cast<float>(value);
+float with_sign(float value, bool negative) {
+  if (std::isnan(value) || (value < 0) == negative) return value;
   return negative ? -FLT_MIN : FLT_MIN;
 }
 
@@ -38,18 +39,43 @@ void EdgeEndSampler::begin_slab(std::int32_t first, std::int32_t last) {
   ends_.assign(rows * words_, 0);
   for (std::int32_t k = first; k < last; ++k)
     for (std::int32_t j = 0; j < grid_.nodes[1] && go_on_(); ++j) source_->row(j, k, row_values_.data(), at(j, k));
-  points_.clear();
+  values_.clear();
   first_value_.clear();
+  std::size_t ends = 0;
   for (std::int32_t k = first; k < last; ++k)
-    for (std::int32_t j = 0; j < grid_.nodes[1]; ++j) mark_ends(j, k);
-  values_.resize(points_.size());
-  for (std::size_t i = 0; i < points_.size() && go_on_(); i += batch) {
-    const std::size_t count = std::min(batch, points_.size() - i);
-    source_->values_at(std::span(points_).subspan(i, count), values_.data() + i);
-  }
+    for (std::int32_t j = 0; j < grid_.nodes[1]; ++j) {
+      first_value_.push_back(ends);
+      ends += mark_ends(j, k);
+    }
+  values_.reserve(ends);
+  for (std::int32_t k = first; k < last; ++k)
+    for (std::int32_t j = 0; j < grid_.nodes[1]; ++j) take_values(j, k);
+  flush();
 }
 
-void EdgeEndSampler::mark_ends(std::int32_t j, std::int32_t k) {
+void EdgeEndSampler::take_values(std::int32_t j, std::int32_t k) {
+  const std::uint64_t* const ends = ends_.data() + (at(j, k) - signs_.data());
+  for (std::size_t w = 0; w < words_; ++w)
+    for_each_bit(ends[w], w, [&](std::size_t i) { points_.push_back(grid_.node(static_cast<std::int32_t>(i), j, k)); });
+  if (points_.size() >= batch) flush();
+}
+
+void EdgeEndSampler::flush() {
+  computed_.resize(points_.size());
+  for (std::size_t i = 0; i < points_.size() && go_on_(); i += batch) {
+    const std::size_t count = std::min(batch, points_.size() - i);
+    source_->values_at(std::span(points_).subspan(i, count), computed_.data() + i);
+  }
+  for (const double v : computed_) values_.push_back(static_cast<float>(v));
+  points_.clear();
+}
+
+std::uint64_t EdgeEndSampler::bytes() const {
+  return (signs_.capacity() + ends_.capacity()) * sizeof(std::uint64_t) + values_.capacity() * sizeof(float) +
+         first_value_.capacity() * sizeof(std::size_t);
+}
+
+std::size_t EdgeEndSampler::mark_ends(std::int32_t j, std::int32_t k) {
   const std::uint64_t* const row = at(j, k);
   std::uint64_t* const ends = ends_.data() + (row - signs_.data());
   const auto last_node = static_cast<std::size_t>(grid_.nodes[0]) - 1;
@@ -65,16 +91,16 @@ void EdgeEndSampler::mark_ends(std::int32_t j, std::int32_t k) {
     ends[w] |= crossed | crossed >> 1;
     if (w > 0) ends[w - 1] |= crossed << 63;
   }
-  first_value_.push_back(points_.size());
-  for (std::size_t w = 0; w < words_; ++w)
-    for_each_bit(ends[w], w, [&](std::size_t i) { points_.push_back(grid_.node(static_cast<std::int32_t>(i), j, k)); });
+  std::size_t count = 0;
+  for (std::size_t w = 0; w < words_; ++w) count += static_cast<std::size_t>(std::popcount(ends[w]));
+  return count;
 }
 
 void EdgeEndSampler::row(std::int32_t j, std::int32_t k, float* values, std::uint64_t* inside) {
   const std::uint64_t* const row = at(j, k);
   std::copy_n(row, (static_cast<std::size_t>(grid_.nodes[0]) + 63) / 64, inside);
   const auto offset = static_cast<std::size_t>(row - signs_.data());
-  const double* value = values_.data() + first_value_[offset / words_];
+  const float* value = values_.data() + first_value_[offset / words_];
   for (std::size_t w = 0; w < words_; ++w)
     for_each_bit(ends_[offset + w], w, [&](std::size_t i) {
       const bool negative = (row[w] >> (i % 64) & 1) != 0;

@@ -22,11 +22,16 @@ class EdgeEndSampler final : public GridSampler {
   void row(std::int32_t j, std::int32_t k, float* values, std::uint64_t* inside) override;
   void values_at(std::span<const Vec3> points, double* out) override { source_->values_at(points, out); }
 
+  /// What it holds now.
+  [[nodiscard]] std::uint64_t bytes() const;
+
  private:
   [[nodiscard]] std::uint64_t* at(std::int32_t j, std::int32_t k) {
     return signs_.data() + (static_cast<std::size_t>(k - first_) * rows_ + static_cast<std::size_t>(j)) * words_;
   }
-  void mark_ends(std::int32_t j, std::int32_t k);
+  std::size_t mark_ends(std::int32_t j, std::int32_t k);
+  void take_values(std::int32_t j, std::int32_t k);
+  void flush();
 
   Grid grid_;
   std::unique_ptr<GridSampler> source_;
@@ -37,8 +42,9 @@ class EdgeEndSampler final : public GridSampler {
   std::vector<float, tbb::cache_aligned_allocator<float>> row_values_;  // not meant
   std::vector<std::uint64_t> ends_;                                     // of crossed edges, by node
   std::vector<std::size_t> first_value_;                                // by row
-  std::vector<Vec3> points_;
-  std::vector<double> values_;
+  std::vector<Vec3> points_;                                            // some rows' worth
+  std::vector<double> computed_;
+  std::vector<float> values_;
 };
 
 }  // namespace meso::implicit

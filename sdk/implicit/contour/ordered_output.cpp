@@ -16,7 +16,10 @@ ByteBuffer OrderedOutput::acquire() {
 void OrderedOutput::offer(std::size_t brick, ByteBuffer& bytes) {
   if (bytes.size() < worth_writing) return;
   {
-    const std::lock_guard lock(mutex_);
+    std::unique_lock lock(mutex_);
+    if (brick != next_ && bytes.size() < max_held_bytes_) return;
+    // The thread of the next brick does not wait: so this ends.
+    changed_.wait(lock, [&] { return brick == next_ || failed_ || stopped_; });
     if (brick != next_) return;
   }
   put(bytes);

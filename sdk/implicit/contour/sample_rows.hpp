@@ -48,9 +48,9 @@ class SampleRows {
     std::swap(spare_[1], plane_[j]);
   }
 
-  [[nodiscard]] static std::uint64_t bytes(const Layout& layout) {
-    return (layout.ny + 3) * ((round_up(layout.nx, 64) + 2 * lead_values) * sizeof(float) +
-                              round_up(layout.words + 1, lead_words) * sizeof(std::uint64_t));
+  [[nodiscard]] static std::uint64_t bytes(std::size_t nx, std::size_t ny) {
+    return (ny + 3) * ((round_up(nx, 64) + 2 * lead_values) * sizeof(float) +
+                       round_up(nx / 64 + 2, lead_words) * sizeof(std::uint64_t));
   }
 
  private:

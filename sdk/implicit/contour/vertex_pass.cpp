@@ -2,10 +2,10 @@
 #include "vertex_pass.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "bits.hpp"
 #include "case_table.hpp"
-#include "edge_end_sampler.hpp"
 #include "pad_vertices.hpp"
 
 namespace meso::implicit {
@@ -48,7 +48,15 @@ VertexPass::VertexPass(const Layout& layout, const GridSource& source, const Mes
       y_(layout.nx + 1),
       z_(layout.nx + 1),
       points_(chunk + 4 * (layout.nx + 1)) {
-  if (signs_only_) sampler_ = std::make_unique<EdgeEndSampler>(source.grid(), std::move(sampler_), std::move(go_on));
+  if (!signs_only_) return;
+  auto edge_ends = std::make_unique<EdgeEndSampler>(source.grid(), std::move(sampler_), std::move(go_on));
+  edge_ends_ = edge_ends.get();
+  sampler_ = std::move(edge_ends);
+}
+
+std::uint64_t VertexPass::grown_by() {
+  const std::uint64_t now = std::max(told_bytes_, edge_ends_ == nullptr ? 0 : edge_ends_->bytes());
+  return now - std::exchange(told_bytes_, now);
 }
 
 BrickRecord VertexPass::run(std::size_t first, std::size_t last, ByteBuffer& out,

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "brick_record.hpp"
+#include "edge_end_sampler.hpp"
 #include "joined_faces.hpp"
 #include "meso/base/mesh_sink.hpp"
 #include "meso/implicit/grid_source.hpp"
@@ -27,6 +28,9 @@ class VertexPass {
   [[nodiscard]] BrickRecord run(std::size_t first, std::size_t last, ByteBuffer& out,
                                 const std::function<bool()>& after_row);
 
+  /// Bytes that the sampler holds more than when this was asked last, where that depends on the surface.
+  [[nodiscard]] std::uint64_t grown_by();
+
  private:
   void sample_plane_below(std::size_t k);
   void row(std::size_t j, std::size_t k, std::uint32_t cell_row, BrickRecord& record);
@@ -40,6 +44,8 @@ class VertexPass {
 
   const Layout& layout_;
   std::unique_ptr<GridSampler> sampler_;
+  EdgeEndSampler* edge_ends_ = nullptr;  // the sampler, if it is one
+  std::uint64_t told_bytes_ = 0;
   const MeshSink& sink_;
   bool signs_only_, polish_;
   RootPolish roots_;

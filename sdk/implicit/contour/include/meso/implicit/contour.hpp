@@ -13,8 +13,8 @@
 // outside.
 //
 // Equal bytes for any number of threads. Memory: some planes of samples a thread, and 2 bytes for every x-crossing.
-// Errors: LIMIT_GRID, LIMIT_GRID_MEMORY, LIMIT_VERTICES, LIMIT_TIME; cancelled work returns nothing and reports
-// nothing, nor does a sink that failed. An empty surface is a result. Thread rule: blocks; uses `jobs` threads.
+// Errors: LIMIT_GRID, LIMIT_GRID_MEMORY, LIMIT_VERTICES, LIMIT_TIME, CANCELLED. A sink that failed is reported by its
+// owner, not here. An empty surface is a result. Thread rule: blocks; uses `jobs` threads, at most as many as TBB has.
 
 #include <cstdint>
 #include <optional>
@@ -41,6 +41,10 @@ struct ContourReport {
   std::uint64_t undefined = 0;  ///< crossed edges one end of which has no value
   double seconds = 0;
 };
+
+/// Whether a grid has few enough nodes, and the budget room for it: what contour() asks first. To be asked before
+/// compile(), which holds tables as long as the grid.
+[[nodiscard]] bool check_grid(const Grid& grid, const RunOptions& run, DiagnosticSink& diagnostics);
 
 [[nodiscard]] std::optional<ContourReport> contour(const GridSource& source, MeshSink& sink,
                                                    const ContourOptions& options, const RunOptions& run,
