@@ -138,6 +138,17 @@ std::vector<Box3> boxes_of(const CellShape& cell) {
   return boxes;
 }
 
+/// The balls that a strut of the neighbour has beside it: beyond the pattern's rim little but balls reaches out.
+std::vector<CellPrimitive> balls_of(const CellShape& cell, const Index3& shift, const CellPrimitive& strut) {
+  std::vector<CellPrimitive> balls;
+  if (std::holds_alternative<Ball>(strut) || shift == Index3{}) return balls;
+  const Vec3 size = cell.size();
+  for (const CellPrimitive& primitive : cell.primitives)
+    if (std::holds_alternative<Ball>(primitive))
+      balls.push_back(translated(primitive, {shift[0] * size.x, shift[1] * size.y, shift[2] * size.z}));
+  return balls;
+}
+
 }  // namespace
 
 std::optional<CellShape> cell_shape(const LatticeCell& cell, DiagnosticSink& sink) {
@@ -193,7 +204,7 @@ Reach reach_of(const CellShape& cell) {
         continue;
       }
       const CellPrimitive primitive = translated(cell.primitives[s], by);
-      if (to_own && covered(primitive, cell.primitives, cell.box)) continue;
+      if (covered(primitive, to_own ? cell.primitives : balls_of(cell, shift, primitive), cell.box)) continue;
       const auto known = std::find_if(placed.begin(), placed.end(),
                                       [&](const CellPrimitive& other) { return same(primitive, other, tolerance); });
       into.push_back(static_cast<std::uint32_t>(known - placed.begin()));

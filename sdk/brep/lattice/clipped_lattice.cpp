@@ -108,7 +108,8 @@ std::optional<ClippedLattice> clipped_lattice_body(const CellShape& cell, const 
                   [&](const Index3& index) { return surface.place(index) != BoxPlace::outside; });
   if (run.should_stop()) return stopped();
   CellKinds kinds(reach, cells);
-  auto solids = kind_solids(cell, reach, kinds.parts(), sink);
+  auto solids = kind_solids(cell, reach, kinds.parts(), run, sink);
+  if (run.should_stop()) return stopped();
   if (!solids) return {};
   ClipPlan plan(surface, cells, kinds, grid, options.reuse);
   clip_all(plan.tasks, *solids, surface, grid, run);

@@ -162,6 +162,34 @@ TEST(ClippedLattice, TrianglesClose) {
   }
 }
 
+TEST(ClippedLattice, TrianglesKeepToTheSurface) {
+  // On the ball in the middle close circles leave the mesher little room.
+  const Made made = clipped({box({3.7, 3.3, 2.9}, {8.7, 5, 5})}, {1, 1, 1}, true, 0, MeshFineness{0.025, 0.5});
+  expect_clean(made);
+  const std::vector<CellPrimitive> primitives = bcc().primitives;
+  const auto off_by = [&](Vec3 p) {
+    for (std::size_t i = 0; i < 3; ++i) p[i] -= 5 * std::floor(p[i] / 5);
+    return std::fabs(signed_distance(primitives, p));
+  };
+  double worst = 0;
+  for (const FaceTemplate& face : made.lattice->body.solids.at(0).outer.geometry->faces) {
+    if (std::holds_alternative<Plane>(face.surface)) continue;
+    for (const auto& triangle : face.mesh.triangles) {
+      std::array<Vec3, 3> corners;
+      for (std::size_t k = 0; k < 3; ++k) {
+        const MeshPoint& p = face.mesh.points[triangle[k]];
+        for (std::size_t i = 0; i < 3; ++i) corners[k][i] = p.point[i] + 5.0 * p.offset[i];
+      }
+      for (int i = 0; i <= 8; ++i)
+        for (int j = 0; i + j <= 8; ++j)
+          worst = std::fmax(worst, off_by(corners[0] + (i / 8.0) * (corners[1] - corners[0]) +
+                                          (j / 8.0) * (corners[2] - corners[0])));
+    }
+  }
+  EXPECT_LT(worst, 0.025 * 4 / 3);  // segments are within the deflection, the middle of a triangle a third more
+  EXPECT_GT(worst, 0.01);
+}
+
 TEST(ClippedLattice, CylinderAndSphere) {
   const TopoDS_Shape rod = BRepPrimAPI_MakeCylinder(gp_Ax2({8.1, 7.7, 1.2}, gp::DZ()), 2.2, 16).Solid();
   const Made in_rod = clipped({rod}, {3, 3, 3});

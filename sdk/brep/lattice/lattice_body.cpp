@@ -16,7 +16,7 @@ std::optional<Body> lattice_body(const CellShape& cell, const LatticeSet& set, c
     return {};
   }
   CellKinds kinds(reach, cells);
-  const auto solids = kind_solids(cell, reach, kinds.parts(), sink);
+  const auto solids = kind_solids(cell, reach, kinds.parts(), {.jobs = 1}, sink);
   if (!solids) return {};
   std::optional<Quotient> quotient = build_quotient(cell, *solids, options, cell.tolerance(), {.jobs = 1}, sink);
   if (!quotient) return {};

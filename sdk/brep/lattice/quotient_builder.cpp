@@ -5,6 +5,7 @@
 #include <string>
 
 #include "face_moments.hpp"
+#include "lattice/fit_triangles.hpp"
 #include "lattice/imprint.hpp"
 #include "lattice/natural_faces.hpp"
 #include "lattice/orbit_matcher.hpp"
@@ -67,6 +68,7 @@ class Builder {
   std::vector<bool> boundary_;  // per edge of the template
   std::map<std::vector<std::int32_t>, std::uint32_t> wall_orbits_;
   std::optional<EdgePolygons> polygons_;  // where a mesh is wanted
+  double deflection_ = 0;
 };
 
 bool Builder::on_boundary(const TopoDS_Edge& edge) const {
@@ -111,6 +113,7 @@ void Builder::add_meshes(const MeshFineness& fineness, const RunOptions& run) {
   std::vector<TemplateEdges> edges;
   for (const Source& source : sources_) edges.push_back(source.template_edges());
   polygons_ = mesh_alike(edges, geometry_, fineness, run);
+  deflection_ = fineness.deflection;
 }
 
 void Builder::classify(CellFace& face, const FaceTemplate& value, const TopoDS_Face& shape) const {
@@ -147,7 +150,7 @@ std::vector<Template> Builder::own_templates(const RunOptions& run) const {
   std::vector<Template> own(sources_.size());
   const bool done = in_parallel(sources_.size(), run, [&](std::size_t, std::size_t k) {
     try {
-      own[k] = shell_to_template(sources_[k].shell, false);
+      own[k] = shell_to_template(sources_[k].shell, {});
       return true;
     } catch (const Standard_Failure&) {
       return false;
@@ -171,8 +174,14 @@ bool Builder::add_faces(const RunOptions& run) {
           const OrbitMatcher::Match& match = source.matches[use.edge];
           use = {.edge = match.edge, .offset = match.offset, .reversed = use.reversed != match.flipped};
         }
-      if (polygons_)
-        value.mesh = named_mesh(TopoDS::Face(it.Current()), source.template_edges(), geometry_, *polygons_).value();
+      if (polygons_) {
+        const TopoDS_Face& face = TopoDS::Face(it.Current());
+        auto mesh = named_mesh(face, source.template_edges(), geometry_, *polygons_);
+        if (!mesh) throw Standard_Failure("a face has not the points of its edges");
+        value.mesh = std::move(*mesh);
+        if (!std::holds_alternative<Plane>(value.surface))
+          fit_triangles(value.mesh, BRep_Tool::Surface(face), geometry_.lattice, deflection_);
+      }
       const Vec3 moment = value.moments.volume_moment;
       kind.volume += (moment.x + moment.y + moment.z) / 3;
       CellFace face{.face = static_cast<std::uint32_t>(geometry_.faces.size())};
@@ -250,12 +259,23 @@ bool walls_overlap(const CellKind& low, const CellKind& high, int axis, Vec3 siz
 
 std::optional<std::vector<TopoDS_Shape>> kind_solids(const CellShape& cell, const Reach& reach,
                                                      const std::vector<std::vector<std::uint32_t>>& kinds,
-                                                     DiagnosticSink& sink) {
-  std::vector<TopoDS_Shape> solids;
-  for (const std::vector<std::uint32_t>& parts : kinds) {
-    const std::optional<TopoDS_Shape> solid = solid_in_box(cell, reach, parts, sink);
-    if (!solid) return {};
-    solids.push_back(*solid);
+                                                     const RunOptions& run, DiagnosticSink& sink) {
+  std::vector<TopoDS_Shape> solids(kinds.size());
+  std::vector<CellShape> cells;  // one for each thread: OpenCASCADE writes to the shapes it reads
+  for (std::size_t i = 0; i < workers_for(kinds.size(), run); ++i) {
+    CellShape& own = cells.emplace_back(cell);
+    for (TopoDS_Shape& solid : own.solids) solid = BRepBuilderAPI_Copy(solid).Shape();
+  }
+  std::vector<DiagnosticSink> sinks(kinds.size());
+  const bool done = in_parallel(kinds.size(), run, [&](std::size_t worker, std::size_t k) {
+    const auto solid = solid_in_box(cells[worker], reach, kinds[k], sinks[k]);
+    if (solid) solids[k] = *solid;
+    return solid.has_value();
+  });
+  if (!done) {
+    const auto told = std::ranges::find_if(sinks, [](const DiagnosticSink& s) { return !s.diagnostics().empty(); });
+    if (told != sinks.end()) sink.report(told->diagnostics().front());
+    return {};
   }
   try {
     if (divide_alike(solids, cell)) return solids;

@@ -13,7 +13,7 @@ namespace meso::brep {
 /// alike. A kind without parts is a null shape. Empty, with GEOMETRY_NOT_REPEATABLE, if a solid cannot be made.
 [[nodiscard]] std::optional<std::vector<TopoDS_Shape>> kind_solids(const CellShape& cell, const Reach& reach,
                                                                    const std::vector<std::vector<std::uint32_t>>& kinds,
-                                                                   DiagnosticSink& sink);
+                                                                   const RunOptions& run, DiagnosticSink& sink);
 
 /// Points of two solids closer than `tolerance` are one. Empty, with GEOMETRY_NOT_REPEATABLE, if a solid is not a
 /// manifold or the run is to stop.
