@@ -1,33 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Copies OpenCASCADE's triangulations of faces so that the points on edges are equal bit for bit. Private.
-
-#include <vector>
+// Meshes the faces of one shell so that the points on shared edges are equal bit for bit. Private.
+//
+// Ellipsoids have a formula (ellipsoid.hpp); plane faces with many loops get a Delaunay triangulation between the
+// points of their edges (plane_mesh.hpp), because OpenCASCADE's mesher takes time quadratic in the loops of one face;
+// all other faces are left to it.
 
 #include "meso/brep/body.hpp"
 #include "occt.hpp"
 
 namespace meso::brep {
 
-/// One for all faces of a shell, in any order: an edge's points are those of the first face that has it, an end point
-/// is the vertex itself.
-class FaceMesher {
- public:
-  FaceMesher(const TopTools_IndexedMapOfShape& edges, const TopTools_IndexedMapOfShape& vertices,
-             const std::vector<Vec3>& vertex_points)
-      : edges_(edges), vertices_(vertices), vertex_points_(vertex_points), edge_points_(edges.Extent() + 1) {}
-
-  /// Outward triangles; those that an edge of zero length folds up are left out. Throws Standard_Failure without a
-  /// triangulation.
-  [[nodiscard]] Triangulation mesh_of(const TopoDS_Face& face);
-
- private:
-  void take_edge_points(const TopoDS_Face& face, const TopoDS_Edge& edge, std::vector<MeshPoint>& points);
-
-  const TopTools_IndexedMapOfShape& edges_;
-  const TopTools_IndexedMapOfShape& vertices_;
-  const std::vector<Vec3>& vertex_points_;
-  std::vector<std::vector<Vec3>> edge_points_;  // by index in edges_, along the edge's forward direction
+struct MeshTolerance {
+  double deflection_mm = 0.1;  ///< chord to surface
+  double angle = 0.5;          ///< radians between neighbouring chords
 };
+
+/// Fills the meshes of `geometry`, which is the shell's template: faces in the order of an explorer, edges and vertices
+/// in that of the maps. Outward triangles; an edge's points are the same for all faces that have it, an end point is
+/// the vertex itself. Throws Standard_Failure where a face cannot be meshed.
+void mesh_faces(const TopoDS_Shell& shell, const MeshTolerance& tolerance, const TopTools_IndexedMapOfShape& edges,
+                const TopTools_IndexedMapOfShape& vertices, Template& geometry);
 
 }  // namespace meso::brep

@@ -8,6 +8,8 @@
 #include <algorithm>
 #include <numbers>
 
+#include "ellipsoid.hpp"
+
 namespace meso::brep {
 namespace {
 
@@ -193,6 +195,7 @@ void extend_by_poles(Box3& box, const TopoDS_Face& face, const GeomAdaptor_Surfa
 }  // namespace
 
 FaceMoments face_moments(const TopoDS_Face& face) {
+  if (const auto ellipsoid = ellipsoid_of(face)) return moments_of(*ellipsoid);
   const BoundaryIntegral integral(face);
   const Components& c = integral.total();
   // A left-handed surface needs no special case: du x dv is the normal that FORWARD means.
@@ -201,6 +204,7 @@ FaceMoments face_moments(const TopoDS_Face& face) {
 }
 
 Box3 face_box(const TopoDS_Face& face) {
+  if (const auto ellipsoid = ellipsoid_of(face)) return box_of(*ellipsoid);
   Box3 box;
   const GeomAdaptor_Surface surface(BRep_Tool::Surface(face));
   Bnd_Box bounds;

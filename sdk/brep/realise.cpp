@@ -119,16 +119,6 @@ class PartFold {
   SolidContext context_;
 };
 
-/// Cells share faces under different locations; meshed once here, the copies find a mesh already.
-void mesh_once(const Solids& solids, const MeshFineness& mesh) {
-  TopTools_IndexedMapOfShape shells;
-  for (const TopoDS_Shape& solid : solids)
-    for (TopExp_Explorer it(solid, TopAbs_SHELL); it.More(); it.Next())
-      shells.Add(it.Current().Located(TopLoc_Location()).Oriented(TopAbs_FORWARD));
-  for (int i = 1; i <= shells.Extent(); ++i)
-    BRepMesh_IncrementalMesh(shells(i), mesh.deflection, false, mesh.angle, true);
-}
-
 void place(Body& body, const Affine& world_from_part) {
   for (Solid& solid : body.solids) {
     solid.outer.placement = world_from_part * solid.outer.placement;
@@ -157,10 +147,7 @@ std::optional<MeshFineness> fineness(const RealiseOptions& options) {
 
 std::optional<Body> to_body(const Solids& solids, const RealiseOptions& options, DiagnosticSink& sink) {
   ShapeToBodyOptions to_body_options;
-  if (const auto mesh = fineness(options)) {
-    mesh_once(solids, *mesh);
-    to_body_options.mesh = MeshTolerance{mesh->deflection, mesh->angle};
-  }
+  if (const auto mesh = fineness(options)) to_body_options.mesh = MeshTolerance{mesh->deflection, mesh->angle};
   TopoDS_Compound compound;
   const BRep_Builder builder;
   builder.MakeCompound(compound);

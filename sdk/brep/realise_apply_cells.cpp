@@ -132,8 +132,8 @@ class CellStep {
     for (std::size_t i = 0; i < cells_.cells.size() && most <= context_.max_boolean_solids; ++i) {
       if (!taken_[i] || clusters.is_alone(i)) continue;
       const Prototype& prototype = cells_.prototypes[cells_.cells[i].prototype];
-      if (prototype.mesh.points.empty()) continue;
-      if (!is_union && boundary_.solid_at(cells_.cells[i].placement * prototype.mesh.points.front()) < 0) continue;
+      if (prototype.anchors.empty()) continue;
+      if (!is_union && boundary_.solid_at(cells_.cells[i].placement * prototype.anchors.front()) < 0) continue;
       most = std::max(most, by_cluster[apart ? clusters.of_cell[i] : 0] += prototype.solids.size());
     }
     return context_.within_budget(most);

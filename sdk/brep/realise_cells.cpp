@@ -138,22 +138,16 @@ class Collector {
   std::optional<std::size_t> make(const Key& key, const eval::Shape& shape, const Affine& map) {
     auto solids = solid_from_shape(shape, map, context_);
     if (!solids) return {};
-    Prototype prototype{.solids = std::move(*solids), .box = {}, .mesh = {}, .surfaces = {}};
+    Prototype prototype;
+    prototype.solids = std::move(*solids);
     for (const TopoDS_Shape& solid : prototype.solids) {
       int shells = 0;
       for (TopExp_Explorer it(solid, TopAbs_SHELL); it.More(); it.Next()) ++shells;
       prototype.is_simple = prototype.is_simple && shells == 1;
       for (TopExp_Explorer it(solid, TopAbs_FACE); it.More(); it.Next())
         prototype.surfaces.emplace_back(TopoDS::Face(it.Current()));
-    }
-    for (const CarrierSurface& surface : prototype.surfaces) {
-      prototype.box.extend(surface.box().min);
-      prototype.box.extend(surface.box().max);
-    }
-    prototype.mesh = coarse_mesh(prototype.solids);
-    for (const TopoDS_Shape& solid : prototype.solids) {
-      const CoarseMesh mesh = prototype.solids.size() == 1 ? prototype.mesh : coarse_mesh({solid});
-      if (!mesh.points.empty()) prototype.anchors.push_back(mesh.points.front());
+      const TopExp_Explorer vertex(solid, TopAbs_VERTEX);
+      if (vertex.More()) prototype.anchors.push_back(to_vec(BRep_Tool::Pnt(TopoDS::Vertex(vertex.Current()))));
     }
     enclose(prototype);
     const std::size_t index = result_.prototypes.size();
@@ -162,12 +156,21 @@ class Collector {
     return index;
   }
 
-  /// Box and ball around all points that the triangles can be wrong about.
+  /// Box and ball around the body.
   static void enclose(Prototype& prototype) {
-    const CoarseMesh& mesh = prototype.mesh;
+    for (const CarrierSurface& surface : prototype.surfaces) {
+      prototype.box.extend(surface.box().min);
+      prototype.box.extend(surface.box().max);
+    }
+    if (prototype.box.empty()) return;
+    prototype.centre = (prototype.box.min + prototype.box.max) / 2;
+    if (const auto radius = radius_by_edges(prototype)) {
+      prototype.radius = *radius;
+      return;
+    }
+    const CoarseMesh& mesh = prototype.mesh();
     Box3 points;
     for (const Vec3 p : mesh.points) points.extend(p);
-    if (points.empty()) return;
     for (std::size_t i = 0; i < 3; ++i) {
       prototype.box.min[i] = std::max(prototype.box.min[i], points.min[i] - mesh.error);
       prototype.box.max[i] = std::min(prototype.box.max[i], points.max[i] + mesh.error);
@@ -175,6 +178,34 @@ class Collector {
     prototype.centre = (points.min + points.max) / 2;
     for (const Vec3 p : mesh.points)
       prototype.radius = std::max(prototype.radius, norm(p - prototype.centre) + mesh.error);
+  }
+
+  /// Faces that are ruled lie between their edges; of those only lines and circles are measured, and ellipsoids. Empty
+  /// for all other bodies.
+  static std::optional<double> radius_by_edges(const Prototype& prototype) {
+    double radius = 0;
+    for (const CarrierSurface& surface : prototype.surfaces) {
+      if (const auto ellipsoid = surface.is_closed() ? ellipsoid_of(surface.face()) : std::nullopt) {
+        radius = std::max(radius, norm(ellipsoid->map.translation - prototype.centre) + radii_of(*ellipsoid).x);
+        continue;
+      }
+      const GeomAbs_SurfaceType type = BRepAdaptor_Surface(surface.face(), false).GetType();
+      if (type != GeomAbs_Plane && type != GeomAbs_Cylinder && type != GeomAbs_Cone) return {};
+      for (TopExp_Explorer it(surface.face(), TopAbs_EDGE); it.More(); it.Next()) {
+        const TopoDS_Edge& edge = TopoDS::Edge(it.Current());
+        for (TopExp_Explorer ends(edge, TopAbs_VERTEX); ends.More(); ends.Next())
+          radius = std::max(radius, norm(to_vec(BRep_Tool::Pnt(TopoDS::Vertex(ends.Current()))) - prototype.centre));
+        if (BRep_Tool::Degenerated(edge)) continue;
+        const BRepAdaptor_Curve curve(edge);
+        if (curve.GetType() == GeomAbs_Line) continue;
+        if (curve.GetType() != GeomAbs_Circle) return {};
+        const Vec3 offset = to_vec(curve.Circle().Location()) - prototype.centre;
+        const double along = dot(offset, to_vec(curve.Circle().Axis().Direction()));
+        const double across = std::sqrt(std::max(0.0, dot(offset, offset) - along * along));
+        radius = std::max(radius, std::hypot(along, across + curve.Circle().Radius()));
+      }
+    }
+    return radius;
   }
 
   const eval::CellStream& cells_;
@@ -195,7 +226,7 @@ Solids CellSolids::solids_of(const CellSolid& cell) const {
 }
 
 CoarseMesh CellSolids::mesh_of(const CellSolid& cell) const {
-  return prototypes[cell.prototype].mesh.placed(cell.placement);
+  return prototypes[cell.prototype].mesh().placed(cell.placement);
 }
 
 std::vector<Vec3> CellSolids::anchors_of(const CellSolid& cell) const {

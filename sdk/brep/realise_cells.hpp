@@ -16,10 +16,19 @@ struct Prototype {
   Box3 box;
   Vec3 centre;  ///< of a ball around it
   double radius = 0;
-  CoarseMesh mesh;
   std::vector<Vec3> anchors;  ///< one point of each solid's surface
   std::vector<CarrierSurface> surfaces;
   bool is_simple = true;  ///< no solid has a void of its own
+
+  /// Made when first asked for: of most cutters box and ball are enough.
+  [[nodiscard]] const CoarseMesh& mesh() const {
+    if (!mesh_) mesh_ = coarse_mesh(solids);
+    return *mesh_;
+  }
+  [[nodiscard]] bool is_enclosed_by_one_surface() const { return surfaces.size() == 1 && surfaces.front().is_closed(); }
+
+ private:
+  mutable std::optional<CoarseMesh> mesh_;
 };
 
 struct CellSolid {

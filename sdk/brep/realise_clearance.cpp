@@ -3,6 +3,7 @@
 
 #include <BRepExtrema_DistShapeShape.hxx>
 #include <algorithm>
+#include <numbers>
 
 #include "face_moments.hpp"
 
@@ -58,6 +59,22 @@ Box3 quick_box(const TopoDS_Shape& shape) {
   return {to_vec(bounds.CornerMin()), to_vec(bounds.CornerMax())};
 }
 
+/// By formula, if the solid is one.
+bool add_ellipsoid(const TopoDS_Shape& solid, double fineness, CoarseMesh& mesh) {
+  TopExp_Explorer it(solid, TopAbs_FACE);
+  const auto ellipsoid = it.More() ? ellipsoid_of(TopoDS::Face(it.Current())) : std::nullopt;
+  it.Next();
+  if (!ellipsoid || it.More()) return false;
+  const Box3 box = box_of(*ellipsoid);
+  const double deflection = 0.01 * fineness * norm(box.max - box.min);
+  mesh.error = std::max(mesh.error, deflection);
+  const Triangulation triangles = mesh_of(*ellipsoid, deflection, std::numbers::pi);
+  const auto first = static_cast<std::uint32_t>(mesh.points.size());
+  for (const MeshPoint& p : triangles.points) mesh.points.push_back(p.point);
+  for (const auto& [a, b, c] : triangles.triangles) mesh.triangles.push_back({first + a, first + b, first + c});
+  return true;
+}
+
 }  // namespace
 
 CarrierSurface::CarrierSurface(const TopoDS_Face& face) : face_(face) {
@@ -93,11 +110,26 @@ CarrierSurface::CarrierSurface(const TopoDS_Face& face) : face_(face) {
     default:
       type_ = GeomAbs_OtherSurface;
   }
+  if (const auto ellipsoid = ellipsoid_of(face)) {
+    is_closed_ = true;
+    if (type_ == GeomAbs_OtherSurface) be(*ellipsoid);
+  }
   // The tight box of a B-spline is an optimisation problem; that of its poles contains it, too.
-  box_ = type_ == GeomAbs_OtherSurface ? quick_box(face) : face_box(face);
+  box_ = type_ == GeomAbs_OtherSurface && !is_closed_ ? quick_box(face) : face_box(face);
+}
+
+void CarrierSurface::be(const Ellipsoid& ellipsoid) {
+  origin_ = ellipsoid.map.translation;
+  minor_ = radii_of(ellipsoid).z;
+  const Mat3& m = ellipsoid.map.linear;
+  const Mat3 cofactors = Mat3::from_columns(cross(m.column(1), m.column(2)), cross(m.column(2), m.column(0)),
+                                            cross(m.column(0), m.column(1)));
+  ball_from_ellipsoid_ = transposed(cofactors);
+  for (double& c : ball_from_ellipsoid_->m) c /= determinant(m);
 }
 
 double CarrierSurface::signed_distance(Vec3 p) const {
+  if (ball_from_ellipsoid_) return minor_ * (norm(*ball_from_ellipsoid_ * (p - origin_)) - 1);
   const Vec3 d = p - origin_;
   const double along = dot(d, axis_), across = norm(d - along * axis_);
   switch (type_) {
@@ -119,6 +151,7 @@ double CarrierSurface::signed_distance(Vec3 p) const {
 Vec3 CarrierSurface::gradient(Vec3 p) const {
   const auto unit = [](Vec3 v) { return norm(v) > 0 ? v / norm(v) : Vec3{}; };
   const Vec3 d = p - origin_;
+  if (ball_from_ellipsoid_) return minor_ * (transposed(*ball_from_ellipsoid_) * unit(*ball_from_ellipsoid_ * d));
   const double along = dot(d, axis_);
   const Vec3 outwards = unit(d - along * axis_);
   switch (type_) {
@@ -138,7 +171,7 @@ bool CarrierSurface::is_convex_on(const std::array<Vec3, 3>& points) const {
     const auto is_above = [this](Vec3 p) { return dot(p - origin_, axis_) > 0; };
     return is_above(points[0]) == is_above(points[1]) && is_above(points[1]) == is_above(points[2]);
   }
-  return type_ == GeomAbs_Plane || type_ == GeomAbs_Cylinder || type_ == GeomAbs_Sphere;
+  return ball_from_ellipsoid_ || type_ == GeomAbs_Plane || type_ == GeomAbs_Cylinder || type_ == GeomAbs_Sphere;
 }
 
 CoarseMesh CoarseMesh::placed(const Affine& placement) const {
@@ -150,6 +183,7 @@ CoarseMesh CoarseMesh::placed(const Affine& placement) const {
 CoarseMesh coarse_mesh(const Solids& solids, double fineness) {
   CoarseMesh mesh;
   for (const TopoDS_Shape& solid : solids) {
+    if (add_ellipsoid(solid, fineness, mesh)) continue;
     const TopoDS_Shape copy = BRepBuilderAPI_Copy(solid).Shape();  // the original may get a finer mesh later
     const Box3 box = quick_box(copy);
     const double deflection = 0.01 * fineness * norm(box.max - box.min);

@@ -5,6 +5,7 @@
 
 #include <optional>
 
+#include "ellipsoid.hpp"
 #include "meso/brep/body.hpp"
 #include "solid_context.hpp"
 
@@ -27,14 +28,20 @@ class CarrierSurface {
   [[nodiscard]] bool is_convex_on(const std::array<Vec3, 3>& points) const;
   /// Of signed_distance, where that is convex.
   [[nodiscard]] Vec3 gradient(Vec3 p) const;
+  /// True for the whole surface of a sphere or ellipsoid: signed_distance < 0 is then what it encloses.
+  [[nodiscard]] bool is_closed() const { return is_closed_; }
   [[nodiscard]] bool is_plane() const { return type_ == GeomAbs_Plane; }
 
  private:
+  void be(const Ellipsoid& ellipsoid);
+
   TopoDS_Face face_;
   Box3 box_;
   GeomAbs_SurfaceType type_ = GeomAbs_OtherSurface;
+  bool is_closed_ = false;
   Vec3 origin_, axis_{0, 0, 1};
   double radius_ = 0, minor_ = 0, sine_ = 0, cosine_ = 1;
+  std::optional<Mat3> ball_from_ellipsoid_;  ///< linear part; `minor_` is then the shortest half axis
 };
 
 /// Triangles near a body's surface: no point of it is farther than `error` from them.

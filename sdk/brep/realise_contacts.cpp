@@ -41,8 +41,8 @@ class Neighbours {
   bool decide(const CellSolid& cell_a, const CellSolid& cell_b, const Affine& a_from_b) {
     const Prototype &a = cells_.prototypes[cell_a.prototype], &b = cells_.prototypes[cell_b.prototype];
     if (holds_a_solid(a, b, a_from_b) || holds_a_solid(b, a, inverse_of_rigid(a_from_b))) return true;
-    if (mutually_apart(a, a.mesh, b, b.mesh, a_from_b)) return false;
-    if (proven_to_touch(a, b.mesh, a_from_b) || proven_to_touch(b, a.mesh, inverse_of_rigid(a_from_b))) return true;
+    if (mutually_apart(a, a.mesh(), b, b.mesh(), a_from_b)) return false;
+    if (proven_to_touch(a, b.mesh(), a_from_b) || proven_to_touch(b, a.mesh(), inverse_of_rigid(a_from_b))) return true;
     if (mutually_apart(a, fine_mesh(cell_a.prototype), b, fine_mesh(cell_b.prototype), a_from_b)) return false;
     for (const TopoDS_Shape& solid : a.solids)
       for (const TopoDS_Shape& other : b.solids)
@@ -68,6 +68,7 @@ class Neighbours {
     return std::ranges::any_of(b.anchors, [&](Vec3 anchor) {
       const Vec3 p = a_from_b * anchor;
       if (!a.box.intersects({p, p})) return false;
+      if (a.is_enclosed_by_one_surface()) return a.surfaces.front().signed_distance(p) < 0;
       return std::ranges::any_of(a.solids, [&](const TopoDS_Shape& solid) {
         BRepClass3d_SolidClassifier classifier(solid, to_pnt(p), clear_distance);
         return classifier.State() == TopAbs_IN;
@@ -84,6 +85,8 @@ class Neighbours {
       if (grown(a.box).intersects({p, p})) near.push_back(p);
     }
     if (near.empty()) return false;
+    if (a.is_enclosed_by_one_surface())
+      return std::ranges::any_of(near, [&](Vec3 p) { return a.surfaces.front().signed_distance(p) < 0; });
     return std::ranges::any_of(a.solids, [&](const TopoDS_Shape& solid) {
       BRepClass3d_SolidClassifier classifier(solid);
       return std::ranges::any_of(near, [&](Vec3 p) {

@@ -150,7 +150,7 @@ TEST(RoundTripVoids, InstancesAreRotatedAndPlaced) {
   const auto hollow = shape_to_body(cone.Reversed(), {}, sink);
   ASSERT_TRUE(body && !hollow);  // inside out on its own
   const TopoDS_Shell inward = TopoDS::Shell(TopExp_Explorer(cone.Reversed(), TopAbs_SHELL).Current());
-  const auto geometry = std::make_shared<const Template>(shell_to_template(inward, false));
+  const auto geometry = std::make_shared<const Template>(shell_to_template(inward, {}));
   for (int i = 0; i < 4; ++i)
     body->solids[0].voids.push_back(whole_template(geometry, {rotation(Vec3{0.6, 0, 0.8}, i), {5.0 + 10 * i, 5, 5}}));
   const double cone_volume = std::numbers::pi * 3 / 3 * (4 + 2 + 1);

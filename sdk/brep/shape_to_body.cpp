@@ -14,19 +14,16 @@ namespace {
 
 class TemplateBuilder {
  public:
-  Template build(const TopoDS_Shell& shell, bool with_mesh) {
+  Template build(const TopoDS_Shell& shell, const std::optional<MeshTolerance>& mesh) {
     TopExp::MapShapes(shell, TopAbs_VERTEX, vertices_);
     TopExp::MapShapes(shell, TopAbs_EDGE, edges_);
     for (int i = 1; i <= vertices_.Extent(); ++i)
       template_.vertices.push_back(to_vec(BRep_Tool::Pnt(TopoDS::Vertex(vertices_(i)))));
     for (int i = 1; i <= edges_.Extent(); ++i)
       template_.edges.push_back(to_edge(TopoDS::Edge(edges_(i).Oriented(TopAbs_FORWARD))));
-    FaceMesher mesher(edges_, vertices_, template_.vertices);
-    for (TopExp_Explorer it(shell, TopAbs_FACE); it.More(); it.Next()) {
-      const TopoDS_Face& face = TopoDS::Face(it.Current());
-      template_.faces.push_back(to_face(face));
-      if (with_mesh) template_.faces.back().mesh = mesher.mesh_of(face);
-    }
+    for (TopExp_Explorer it(shell, TopAbs_FACE); it.More(); it.Next())
+      template_.faces.push_back(to_face(TopoDS::Face(it.Current())));
+    if (mesh) mesh_faces(shell, *mesh, edges_, vertices_, template_);
     return std::move(template_);
   }
 
@@ -121,7 +118,6 @@ class BodyBuilder {
   BodyBuilder(const ShapeToBodyOptions& options, DiagnosticSink& sink) : options_(options), sink_(sink) {}
 
   std::optional<Body> build(const TopoDS_Shape& shape) {
-    if (options_.mesh) mesh(shape);
     for (TopExp_Explorer it(shape, TopAbs_SOLID); it.More(); it.Next()) add_solid(TopoDS::Solid(it.Current()));
     if (body_.solids.empty() && !sink_.has_errors()) sink_.report({.code = Code::geometry_no_solid});
     if (sink_.has_errors()) return std::nullopt;
@@ -129,10 +125,6 @@ class BodyBuilder {
   }
 
  private:
-  void mesh(const TopoDS_Shape& shape) const {
-    BRepMesh_IncrementalMesh(shape, options_.mesh->deflection_mm, Standard_False, options_.mesh->angle, Standard_True);
-  }
-
   // The outer shell is the one that encloses material; every other one encloses a hole in it.
   void add_solid(const TopoDS_Solid& solid) {
     Solid value;
@@ -170,7 +162,7 @@ class BodyBuilder {
     const auto key = std::pair(shell.TShape().get(), shell.Orientation());
     auto known = templates_.find(key);
     if (known == templates_.end()) {
-      auto geometry = std::make_shared<const Template>(shell_to_template(shell, options_.mesh.has_value()));
+      auto geometry = std::make_shared<const Template>(shell_to_template(shell, options_.mesh));
       const double volume = signed_volume(*geometry);
       known = templates_.emplace(key, Known{shell, std::move(geometry), volume}).first;
     }
@@ -190,8 +182,8 @@ class BodyBuilder {
 
 }  // namespace
 
-Template shell_to_template(const TopoDS_Shell& shell, bool with_mesh) {
-  return TemplateBuilder().build(TopoDS::Shell(shell.Located(TopLoc_Location())), with_mesh);
+Template shell_to_template(const TopoDS_Shell& shell, const std::optional<MeshTolerance>& mesh) {
+  return TemplateBuilder().build(TopoDS::Shell(shell.Located(TopLoc_Location())), mesh);
 }
 
 std::optional<Body> shape_to_body(const TopoDS_Shape& shape, const ShapeToBodyOptions& options, DiagnosticSink& sink) {

@@ -12,16 +12,13 @@
 
 #include <optional>
 
+#include "face_mesh.hpp"
 #include "meso/base/diagnostic.hpp"
 #include "meso/brep/body.hpp"
 #include "occt.hpp"
 
 namespace meso::brep {
 
-struct MeshTolerance {
-  double deflection_mm = 0.1;  ///< chord to surface
-  double angle = 0.5;          ///< radians between neighbouring chords
-};
 struct ShapeToBodyOptions {
   std::optional<MeshTolerance> mesh{};
 };
@@ -29,8 +26,7 @@ struct ShapeToBodyOptions {
 [[nodiscard]] std::optional<Body> shape_to_body(const TopoDS_Shape& shape, const ShapeToBodyOptions& options,
                                                 DiagnosticSink& sink);
 
-/// One closed shell as a template in the shell's own frame (its location is ignored). With `with_mesh` the shell's
-/// faces must carry triangulations. Throws Standard_Failure.
-[[nodiscard]] Template shell_to_template(const TopoDS_Shell& shell, bool with_mesh);
+/// One closed shell as a template in the shell's own frame (its location is ignored). Throws Standard_Failure.
+[[nodiscard]] Template shell_to_template(const TopoDS_Shell& shell, const std::optional<MeshTolerance>& mesh);
 
 }  // namespace meso::brep

@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "boolean.hpp"
+#include "ellipsoid.hpp"
 #include "meso/base/number.hpp"
 
 namespace meso::brep {
@@ -153,7 +154,9 @@ OptionalSolid primitive_solid(const eval::SphereShape& sphere, const Affine& map
                               const SolidContext& context) {
   if (!positions_hold({sphere.center}, where, context) || !sizes_hold({{"radius", sphere.radius}}, where, context))
     return {};
-  return mapped(BRepPrimAPI_MakeSphere(to_pnt(sphere.center), sphere.radius).Solid(), map);
+  if (is_similarity(map)) return mapped(BRepPrimAPI_MakeSphere(to_pnt(sphere.center), sphere.radius).Solid(), map);
+  const double r = sphere.radius;
+  return ellipsoid_solid(map * Affine{Mat3::from_columns({r, 0, 0}, {0, r, 0}, {0, 0, r}), sphere.center});
 }
 
 OptionalSolid primitive_solid(const eval::EllipsoidShape& ellipsoid, const Affine& map, ElementId where,
@@ -163,7 +166,8 @@ OptionalSolid primitive_solid(const eval::EllipsoidShape& ellipsoid, const Affin
       !sizes_hold({{"rx", r.x}, {"ry", r.y}, {"rz", r.z}}, where, context))
     return {};
   const Affine stretch{Mat3::from_columns({r.x, 0, 0}, {0, r.y, 0}, {0, 0, r.z}), ellipsoid.center};
-  return mapped(unit_sphere(), map * stretch);
+  const Affine whole = map * stretch;
+  return is_similarity(whole) ? mapped(unit_sphere(), whole) : ellipsoid_solid(whole);
 }
 
 OptionalSolid primitive_solid(const eval::CylinderShape& cylinder, const Affine& map, ElementId where,
