@@ -3,6 +3,7 @@
 
 #include <ShapeAnalysis_Surface.hxx>
 #include <map>
+#include <tuple>
 
 namespace meso::brep {
 namespace {
@@ -26,27 +27,30 @@ std::map<Segment, Sides> segments_of(const Triangulation& mesh) {
   return segments;
 }
 
-}  // namespace
+Vec3 place_of(const MeshPoint& p, const Mat3& lattice) {
+  const Index3& o = p.offset;
+  return p.point + lattice * Vec3{static_cast<double>(o[0]), static_cast<double>(o[1]), static_cast<double>(o[2])};
+}
 
-void fit_triangles(Triangulation& mesh, const Handle(Geom_Surface) & surface, const Mat3& lattice, double deflection) {
+/// Halves at the surface the segments between two triangles that `wants` names, given the segment and its middle's
+/// foot.
+template <typename Wants>
+void halve(Triangulation& mesh, const Handle(Geom_Surface) & surface, const Mat3& lattice, const Wants& wants) {
   constexpr int most_passes = 12;  // each halves what is too long
   const Handle(ShapeAnalysis_Surface) analysis = new ShapeAnalysis_Surface(surface);
-  const auto place = [&](std::uint32_t i) {
-    const MeshPoint& p = mesh.points[i];
-    const Index3& o = p.offset;
-    return p.point + lattice * Vec3{static_cast<double>(o[0]), static_cast<double>(o[1]), static_cast<double>(o[2])};
-  };
-  const auto foot = [&](Vec3 p) { return to_vec(analysis->Value(analysis->ValueOfUV(to_pnt(p), 1e-7))); };
   for (int pass = 0; pass < most_passes; ++pass) {
     std::vector<bool> divided(mesh.triangles.size());
     bool any = false;
     for (const auto& [segment, sides] : segments_of(mesh)) {
-      if (sides.count != 2 || divided[sides.triangle[0]] || divided[sides.triangle[1]]) continue;
-      const Vec3 middle = 0.5 * (place(segment[0]) + place(segment[1])), on_surface = foot(middle);
-      if (norm(on_surface - middle) <= deflection) continue;
+      if (sides.count != 2) continue;
+      const Vec3 middle =
+          0.5 * (place_of(mesh.points[segment[0]], lattice) + place_of(mesh.points[segment[1]], lattice));
+      const Vec3 foot = to_vec(analysis->Value(analysis->ValueOfUV(to_pnt(middle), 1e-7)));
+      if (!wants(segment, norm(foot - middle))) continue;
       any = true;
+      if (divided[sides.triangle[0]] || divided[sides.triangle[1]]) continue;  // in the next pass
       const auto fresh = static_cast<std::uint32_t>(mesh.points.size());
-      mesh.points.push_back({.point = on_surface});
+      mesh.points.push_back({.point = foot});
       for (const std::size_t t : sides.triangle) {
         divided[t] = true;
         std::array<std::uint32_t, 3> half = mesh.triangles[t];
@@ -62,6 +66,44 @@ void fit_triangles(Triangulation& mesh, const Handle(Geom_Surface) & surface, co
       }
     }
     if (!any) return;
+  }
+}
+
+/// Both ends, the second counted from the cell of the first.
+using SegmentName = std::array<double, 9>;
+SegmentName name_of(MeshPoint a, MeshPoint b) {
+  const auto key = [](const MeshPoint& p) { return std::tie(p.point.x, p.point.y, p.point.z, p.offset); };
+  if (key(b) < key(a)) std::swap(a, b);
+  SegmentName name{a.point.x, a.point.y, a.point.z, b.point.x, b.point.y, b.point.z};
+  for (std::size_t i = 0; i < 3; ++i) name[6 + i] = b.offset[i] - a.offset[i];
+  return name;
+}
+
+}  // namespace
+
+void fit_triangles(Triangulation& mesh, const Handle(Geom_Surface) & surface, const Mat3& lattice, double deflection) {
+  halve(mesh, surface, lattice, [&](const Segment&, double off) { return off > deflection; });
+}
+
+void part_segments(const std::vector<MeshedFace>& faces, const Mat3& lattice, const Box3& box, double tolerance) {
+  std::map<SegmentName, int> uses;
+  for (const MeshedFace& face : faces)
+    for (const auto& [segment, sides] : segments_of(*face.mesh))
+      ++uses[name_of(face.mesh->points[segment[0]], face.mesh->points[segment[1]])];
+  for (const MeshedFace& face : faces) {
+    const std::vector<MeshPoint>& points = face.mesh->points;
+    const auto in_one_wall = [&](const Segment& segment) {
+      const Vec3 a = place_of(points[segment[0]], lattice), b = place_of(points[segment[1]], lattice);
+      for (std::size_t i = 0; i < 3; ++i)
+        for (const double wall : {box.min[i], box.max[i]})
+          if (std::fabs(a[i] - wall) < tolerance && std::fabs(b[i] - wall) < tolerance) return true;
+      return false;
+    };
+    halve(*face.mesh, face.surface, lattice, [&, given = points.size()](const Segment& segment, double) {
+      if (segment[1] >= given) return false;  // a half: nobody else has its middle
+      const auto found = uses.find(name_of(points[segment[0]], points[segment[1]]));
+      return (found != uses.end() && found->second > 1) || (!face.is_wall && in_one_wall(segment));
+    });
   }
 }
 

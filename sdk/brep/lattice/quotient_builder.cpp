@@ -55,6 +55,7 @@ class Builder {
     return std::fabs(p[axis] - (side ? cell_.box.max : cell_.box.min)[axis]) < 4 * tolerance_;
   }
   [[nodiscard]] bool on_boundary(const TopoDS_Edge& edge) const;
+  void add_meshes_of(const Source& source, const CellKind& kind);
   void classify(CellFace& face, const FaceTemplate& value, const TopoDS_Face& shape) const;
   std::uint32_t wall_orbit(const CellFace& face, const FaceTemplate& value);
   bool find_clusters(CellKind& kind, const std::vector<std::uint32_t>& face_lumps);
@@ -160,6 +161,20 @@ std::vector<Template> Builder::own_templates(const RunOptions& run) const {
   return own;
 }
 
+void Builder::add_meshes_of(const Source& source, const CellKind& kind) {
+  std::vector<MeshedFace> faces;
+  for (std::size_t f = 0; f < kind.faces.size(); ++f) {
+    FaceTemplate& face = geometry_.faces[kind.faces[f].face];
+    auto mesh = named_mesh(kind.shapes[f], source.template_edges(), geometry_, *polygons_);
+    if (!mesh) throw Standard_Failure("a face has not the points of its edges");
+    face.mesh = std::move(*mesh);
+    const Handle(Geom_Surface) surface = BRep_Tool::Surface(kind.shapes[f]);
+    if (!std::holds_alternative<Plane>(face.surface)) fit_triangles(face.mesh, surface, geometry_.lattice, deflection_);
+    faces.push_back({&face.mesh, surface, kind.faces[f].axis >= 0});
+  }
+  part_segments(faces, geometry_.lattice, cell_.box, 4 * tolerance_);
+}
+
 bool Builder::add_faces(const RunOptions& run) {
   std::vector<Template> templates = own_templates(run);
   for (std::size_t k = 0; k < sources_.size(); ++k) {
@@ -174,14 +189,6 @@ bool Builder::add_faces(const RunOptions& run) {
           const OrbitMatcher::Match& match = source.matches[use.edge];
           use = {.edge = match.edge, .offset = match.offset, .reversed = use.reversed != match.flipped};
         }
-      if (polygons_) {
-        const TopoDS_Face& face = TopoDS::Face(it.Current());
-        auto mesh = named_mesh(face, source.template_edges(), geometry_, *polygons_);
-        if (!mesh) throw Standard_Failure("a face has not the points of its edges");
-        value.mesh = std::move(*mesh);
-        if (!std::holds_alternative<Plane>(value.surface))
-          fit_triangles(value.mesh, BRep_Tool::Surface(face), geometry_.lattice, deflection_);
-      }
       const Vec3 moment = value.moments.volume_moment;
       kind.volume += (moment.x + moment.y + moment.z) / 3;
       CellFace face{.face = static_cast<std::uint32_t>(geometry_.faces.size())};
@@ -194,6 +201,7 @@ bool Builder::add_faces(const RunOptions& run) {
       kind.shapes.push_back(TopoDS::Face(it.Current()));
       geometry_.faces.push_back(std::move(value));
     }
+    if (polygons_) add_meshes_of(source, kind);
   }
   quotient_.uses.resize(geometry_.edges.size());
   for (std::uint32_t k = 0; k < quotient_.kinds.size(); ++k)
