@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "meso/mesh_distance/mesh_field.hpp"
 
-#include <tbb/info.h>
-#include <tbb/task_arena.h>
-
 #include <algorithm>
 #include <limits>
 
@@ -34,11 +31,7 @@ std::shared_ptr<const MeshField> MeshField::make(const TriangleMesh& mesh, const
   }
   StopPoll stop(options);
   std::shared_ptr<const SignedMesh> made;
-  // More threads than there are cores would only earn a warning of TBB's.
-  const int cores = tbb::info::default_concurrency();
-  tbb::task_arena arena(options.jobs == 0 ? cores
-                                          : static_cast<int>(std::min<unsigned>(options.jobs, unsigned(cores))));
-  arena.execute([&] {
+  with_jobs(options, [&] {
     std::optional<CleanMesh> clean = clean_mesh(mesh, name, stop, sink);
     if (!clean) return;
     TriangleTree tree(std::move(clean->triangles), clean->box, stop);
@@ -83,8 +76,8 @@ Box3 MeshField::bounds(double level) const {
 }
 
 std::unique_ptr<ExternalField::Prepared> MeshField::prepare(const Grid& grid, const Affine& field_from_grid,
-                                                            double band) const {
-  return prepare_mesh(mesh_, grid, field_from_grid, band);
+                                                            double band, const RunOptions& run) const {
+  return prepare_mesh(mesh_, grid, field_from_grid, band, run);
 }
 
 }  // namespace meso::implicit

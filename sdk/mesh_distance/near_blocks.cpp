@@ -50,7 +50,8 @@ class Search {
 
 }  // namespace
 
-NearBlocks::NearBlocks(const SignedMesh& mesh, const Grid& grid, const Affine& field_from_grid, double band) {
+NearBlocks::NearBlocks(const SignedMesh& mesh, const Grid& grid, const Affine& field_from_grid, double band,
+                       StopPoll& stop) {
   constexpr std::int32_t start = 16 * edge;
   Index roots{};
   for (std::size_t a = 0; a < 3; ++a) {
@@ -61,6 +62,7 @@ NearBlocks::NearBlocks(const SignedMesh& mesh, const Grid& grid, const Affine& f
   const Search search(mesh, grid, field_from_grid, band,
                       [this](Index first) { near_[index(first[0] / edge, first[1] / edge, first[2] / edge)] = 1; });
   tbb::parallel_for(0, roots[0] * roots[1] * roots[2], [&](std::int32_t r) {
+    if (stop()) return;
     search.visit({r % roots[0] * start, r / roots[0] % roots[1] * start, r / (roots[0] * roots[1]) * start}, start,
                  TriangleTree::no_triangle);
   });

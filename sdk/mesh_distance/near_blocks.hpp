@@ -13,7 +13,8 @@ class NearBlocks {
  public:
   static constexpr std::int32_t edge = 4;
 
-  NearBlocks(const SignedMesh& mesh, const Grid& grid, const Affine& field_from_grid, double band);
+  /// Cut short by `stop`, it means nothing.
+  NearBlocks(const SignedMesh& mesh, const Grid& grid, const Affine& field_from_grid, double band, StopPoll& stop);
 
   [[nodiscard]] bool contains(std::int32_t i, std::int32_t j, std::int32_t k) const {
     return near_[index(i / edge, j / edge, k / edge)] != 0;

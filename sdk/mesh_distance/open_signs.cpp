@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "open_signs.hpp"
 
+#include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
@@ -14,8 +15,12 @@ struct Node {
 
 class Front {
  public:
-  Front(const GridTicks& ticks, const IsInside& is_inside)
-      : ticks_(ticks), is_inside_(is_inside), known_(ticks.rows() * row_length()), inside_(known_.size()) {}
+  Front(const GridTicks& ticks, const IsInside& is_inside, StopPoll& stop)
+      : ticks_(ticks),
+        is_inside_(is_inside),
+        stop_(stop),
+        known_(ticks.rows() * row_length()),
+        inside_(known_.size()) {}
 
   void want(Node n) {
     if (n.i < 0 || n.j < 0 || n.k < 0 || n.i >= ticks_.x.size() || n.j >= ticks_.y.size() || n.k >= ticks_.z.size())
@@ -30,8 +35,12 @@ class Front {
     while (!wanted_.empty()) {
       const std::vector<Node> nodes = std::exchange(wanted_, {});
       std::vector<char> found(nodes.size());
-      tbb::parallel_for(std::size_t{0}, nodes.size(),
-                        [&](std::size_t n) { found[n] = is_inside_(nodes[n].i, nodes[n].j, nodes[n].k) ? 1 : 0; });
+      tbb::parallel_for(tbb::blocked_range<std::size_t>(0, nodes.size(), 1024), [&](const auto& range) {
+        if (stop_()) return;
+        for (std::size_t n = range.begin(); n != range.end(); ++n)
+          found[n] = is_inside_(nodes[n].i, nodes[n].j, nodes[n].k) ? 1 : 0;
+      });
+      if (stop_.stopped()) return;
       for (std::size_t n = 0; n < nodes.size(); ++n) inside_[number(nodes[n])] = found[n] != 0;
       for (const Node& n : nodes) follow(n);
     }
@@ -69,6 +78,7 @@ class Front {
 
   const GridTicks& ticks_;
   const IsInside& is_inside_;
+  StopPoll& stop_;
   std::vector<bool> known_, inside_;
   std::vector<Node> wanted_;
 };
@@ -90,8 +100,8 @@ void want_crossed(Front& front, const RowSigns& rows, const GridTicks& ticks, in
 }  // namespace
 
 void decide_by_winding_number(RowSigns& rows, std::span<const Triangle> triangles, const GridTicks& ticks,
-                              const IsInside& is_inside) {
-  Front front(ticks, is_inside);
+                              const IsInside& is_inside, StopPoll& stop) {
+  Front front(ticks, is_inside, stop);
   front.want({0, 0, 0});
   want_crossed(front, rows, ticks, 0);
   std::vector<Triangle> turned(triangles.begin(), triangles.end());
@@ -101,9 +111,12 @@ void decide_by_winding_number(RowSigns& rows, std::span<const Triangle> triangle
       for (Vec3& p : turned[t]) p = rotated(p);
     });
     turned_ticks = {turned_ticks.y, turned_ticks.z, turned_ticks.x};
-    want_crossed(front, RowSigns(turned, turned_ticks), turned_ticks, turns);
+    const RowSigns turned_rows(turned, turned_ticks, stop);
+    if (stop()) return;
+    want_crossed(front, turned_rows, turned_ticks, turns);
   }
   front.advance();
+  if (stop()) return;
 
   std::vector<std::size_t> start{0};
   std::vector<RowSigns::Change> changes;

@@ -15,8 +15,9 @@ namespace meso::implicit {
 /// Nodes by tick numbers.
 using IsInside = std::function<bool(std::int32_t i, std::int32_t j, std::int32_t k)>;
 
-/// Gives `rows`, made of the same triangles and ticks, the numbers 1 where `is_inside` says so, and 0.
+/// Gives `rows`, made of the same triangles and ticks, the numbers 1 where `is_inside` says so, and 0. Cut short by
+/// `stop`, they mean nothing.
 void decide_by_winding_number(RowSigns& rows, std::span<const Triangle> triangles, const GridTicks& ticks,
-                              const IsInside& is_inside);
+                              const IsInside& is_inside, StopPoll& stop);
 
 }  // namespace meso::implicit

@@ -74,21 +74,39 @@ class Alignment {
 
 /// What all threads share.
 struct Shared {
-  Shared(std::shared_ptr<const SignedMesh> signed_mesh, const Grid& nodes, const Affine& map, double largest)
+  /// Cut short by `stop`, it must not be asked.
+  Shared(std::shared_ptr<const SignedMesh> signed_mesh, const Grid& nodes, const Affine& map, double largest,
+         StopPoll& stop)
       : mesh(std::move(signed_mesh)), grid(nodes), field_from_grid(map), band(largest), alignment(nodes, map) {
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      for (std::int32_t i = 0; i < grid.nodes[axis]; ++i) coordinates[axis].push_back(grid.coordinate(axis, i));
     std::vector<Triangle> moved;
     if (!alignment.in_field()) moved = alignment.moved_to_grid(mesh->tree().triangles());
     const std::span<const Triangle> triangles = alignment.in_field() ? mesh->tree().triangles() : moved;
-    signs.emplace(triangles, alignment.ticks());
+    signs.emplace(triangles, alignment.ticks(), stop);
+    if (stop()) return;
     if (!mesh->quality().closed) {
-      decide_by_winding_number(*signs, triangles, alignment.ticks(), [this](auto i, auto j, auto k) {
+      const auto is_inside = [this](auto i, auto j, auto k) {
         return mesh->is_inside_open(point(alignment.flipped(0, i), alignment.flipped(1, j), alignment.flipped(2, k)));
-      });
+      };
+      decide_by_winding_number(*signs, triangles, alignment.ticks(), is_inside, stop);
     }
-    if (band > 0 && band < HUGE_VAL) near.emplace(*mesh, grid, field_from_grid, band);
+    if (band > 0 && band < HUGE_VAL) near.emplace(*mesh, grid, field_from_grid, band, stop);
   }
   [[nodiscard]] Vec3 point(std::int32_t i, std::int32_t j, std::int32_t k) const {
     return without_specks(field_from_grid * grid.node(i, j, k));
+  }
+  /// -1 inside, 0 on the surface, 1 outside; nothing if p is no node.
+  [[nodiscard]] std::optional<int> sign_of_node(Vec3 p) const {
+    std::array<std::int32_t, 3> tick{};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const double at = std::round((p[axis] - grid.box.min[axis]) / grid.spacing(axis));
+      if (!(at >= 0 && at < grid.nodes[axis])) return {};
+      const auto i = static_cast<std::int32_t>(at);
+      if (coordinates[axis][static_cast<std::size_t>(i)] != p[axis]) return {};
+      tick[axis] = alignment.flipped(axis, i);
+    }
+    return signs->sign(alignment.ticks().row(tick[1], tick[2]), tick[0]);
   }
 
   std::shared_ptr<const SignedMesh> mesh;
@@ -96,6 +114,7 @@ struct Shared {
   Affine field_from_grid;
   double band;
   Alignment alignment;
+  std::array<std::vector<double>, 3> coordinates;
   std::optional<RowSigns> signs;
   std::optional<NearBlocks> near;
 };
@@ -115,7 +134,24 @@ class Rows final : public ExternalRows {
     }
   }
 
+  void values_at(std::span<const Vec3> points, std::span<const double> within, double* out) override {
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const Vec3 p = without_specks(shared_->field_from_grid * points[i]);
+      const int sign = this->sign(points[i], p);
+      out[i] = within[i] > 0 && sign != 0 ? value_within(p, within[i], sign) : sign;
+    }
+  }
+
  private:
+  double value_within(Vec3 p, double within, int sign) {
+    const double beyond = 2 * sign * within;
+    if (ball_.holds(p, within)) return beyond;
+    const SignedMesh::Value at = shared_->mesh->distance(p, hint_, within);
+    hint_ = at.triangle;
+    ball_ = {p, std::min(at.distance, within), sign};
+    return at.distance <= within ? SignedMesh::with_sign(at.distance, sign) : beyond;
+  }
+
   /// Inside or outside, beyond every band.
   void write_signs(std::size_t row, std::int32_t first, std::int32_t last, double* out) const {
     const double far = shared_->band < HUGE_VAL && shared_->band > 0 ? 2 * shared_->band : 1;
@@ -145,8 +181,24 @@ class Rows final : public ExternalRows {
     }
   }
 
+  [[nodiscard]] int sign(Vec3 grid_point, Vec3 p) const {
+    if (const auto of_node = shared_->sign_of_node(grid_point)) return *of_node;
+    // Nothing to cross on the way to the last point: no other sign. A surface with holes has no such rule.
+    if (ball_.sign != 0 && shared_->mesh->quality().closed && ball_.holds(p, 0)) return ball_.sign;
+    return shared_->mesh->sign(p);
+  }
+
+  /// The surface does not come into this ball.
+  struct EmptyBall {
+    Vec3 middle;
+    double radius = 0;
+    int sign = 0;  ///< of its points
+    [[nodiscard]] bool holds(Vec3 p, double around) const { return norm(p - middle) + around < (1 - 1e-9) * radius; }
+  };
+
   std::shared_ptr<const Shared> shared_;
   std::uint32_t hint_ = TriangleTree::no_triangle;
+  EmptyBall ball_;  ///< about the last point
 };
 
 class PreparedMesh final : public ExternalField::Prepared {
@@ -161,8 +213,14 @@ class PreparedMesh final : public ExternalField::Prepared {
 }  // namespace
 
 std::unique_ptr<ExternalField::Prepared> prepare_mesh(std::shared_ptr<const SignedMesh> mesh, const Grid& grid,
-                                                      const Affine& field_from_grid, double band) {
-  return std::make_unique<PreparedMesh>(std::make_shared<const Shared>(std::move(mesh), grid, field_from_grid, band));
+                                                      const Affine& field_from_grid, double band,
+                                                      const RunOptions& options) {
+  StopPoll stop(options);
+  std::shared_ptr<const Shared> shared;
+  with_jobs(options,
+            [&] { shared = std::make_shared<const Shared>(std::move(mesh), grid, field_from_grid, band, stop); });
+  if (stop.stopped()) return nullptr;
+  return std::make_unique<PreparedMesh>(std::move(shared));
 }
 
 }  // namespace meso::implicit

@@ -7,8 +7,9 @@
 
 namespace meso::implicit {
 
+/// Empty if the run was stopped.
 [[nodiscard]] std::unique_ptr<ExternalField::Prepared> prepare_mesh(std::shared_ptr<const SignedMesh> mesh,
                                                                     const Grid& grid, const Affine& field_from_grid,
-                                                                    double band);
+                                                                    double band, const RunOptions& options);
 
 }  // namespace meso::implicit

@@ -20,7 +20,7 @@ std::shared_ptr<const MeshField> field_of(const TriangleMesh& mesh) {
 
 std::vector<double> all_rows(const MeshField& field, const Grid& grid, const Affine& map, double band) {
   std::vector<double> out(grid.node_count());
-  const auto prepared = field.prepare(grid, map, band);
+  const auto prepared = field.prepare(grid, map, band, {});
   const auto rows = prepared->make_rows();
   double* at = out.data();
   for (std::int32_t k = 0; k < grid.nodes[2]; ++k) {
@@ -69,10 +69,39 @@ void expect_rows_like_values(const MeshField& field, const Grid& grid, const Aff
 
 const Grid grid{.box = {{-1.25, -1.25, -1.25}, {1.25, 1.25, 1.5}}, .nodes = {41, 33, 23}};
 
+/// Points with neighbours in the list near and far, nodes among them, asked within all kinds of magnitudes.
+void expect_points_like_values(const MeshField& field, const Affine& map, bool exact_signs) {
+  Random random(41);
+  std::vector<Vec3> points;
+  std::vector<double> within;
+  for (std::int32_t k = 0; k < grid.nodes[2]; k += 3)
+    for (std::int32_t j = 0; j < grid.nodes[1]; j += 2)
+      for (std::int32_t i = 0; i < grid.nodes[0]; ++i) points.push_back(grid.node(i, j, k));
+  for (Vec3 p; points.size() < 12'000; points.push_back(p))
+    p = random.in(0, 1) < 0.1 ? random.in_cube(1.4) : p + std::exp(random.in(-12, -2)) * random.in_cube(1);
+  for (std::size_t n = 0; n < points.size(); ++n)
+    within.push_back(n % 17 == 0 ? HUGE_VAL : n % 5 == 0 ? 0 : std::exp(random.in(-6, 0)));
+  std::vector<double> found(points.size());
+  field.prepare(grid, map, 0, {})->make_rows()->values_at(points, within, found.data());
+  for (std::size_t n = 0; n < points.size(); ++n) {
+    const double value = field.value(map * points[n]);
+    if (!exact_signs && std::abs(value) < 1e-13) continue;
+    ASSERT_EQ(sign(found[n]), sign(value)) << n;
+    if (std::abs(value) <= within[n]) {
+      ASSERT_EQ(found[n], value) << n;
+    } else {
+      ASSERT_TRUE(std::abs(found[n]) > within[n] || (within[n] == 0 && found[n] != 0)) << n;
+    }
+  }
+}
+
 TEST(PreparedMesh, RowsAreValuesWhereTheMapScalesShiftsAndMirrors) {
   for (const TriangleMesh& mesh : {icosphere(2), spiky_saddle(7), box_mesh({-1, -1, -1}, {1, 1, 1})}) {
     const auto field = field_of(mesh);
     expect_rows_like_values(*field, grid, {}, true);
+    expect_points_like_values(*field, {}, true);
+    expect_points_like_values(*field, {{{-1, 0, 0, 0, 0.7, 0, 0, 0, -1.3}}, {0.1, 0.3, -0.2}}, true);
+    expect_points_like_values(*field, {rotation({0.6, 0, 0.8}, 1), {0.1, 0.05, -0.1}}, false);
     expect_rows_like_values(*field, grid, Affine::from_translation({0.1, -0.2, 1e-3}), true);
     expect_rows_like_values(*field, grid, {{{-1, 0, 0, 0, 0.7, 0, 0, 0, -1.3}}, {0.1, 0.3, -0.2}}, true);
   }

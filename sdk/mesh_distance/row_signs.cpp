@@ -12,7 +12,7 @@ namespace meso::implicit {
 namespace {
 
 struct Crossing {
-  std::uint32_t row;
+  std::uint64_t row;
   std::int32_t node;  ///< the first one beyond
   std::int32_t change;
 };
@@ -54,7 +54,7 @@ class TriangleRows {
     const double y = ticks_.y[j], z = ticks_.z[k];
     const RayView view = view_along_x(t_, y, z);
     bool may_touch = view.touches;
-    const auto row = static_cast<std::uint32_t>(ticks_.row(j, k));
+    const auto row = std::uint64_t{ticks_.row(j, k)};
     if (view.crossing != 0) {
       // Rounded guess first, then exactly.
       const double x = t_[0].x - ((y - t_[0].y) * normal_.y + (z - t_[0].z) * normal_.z) / normal_.x;
@@ -117,14 +117,16 @@ std::int32_t Ticks::after(double x) const {
   return i;
 }
 
-RowSigns::RowSigns(std::span<const Triangle> triangles, const GridTicks& ticks) {
+RowSigns::RowSigns(std::span<const Triangle> triangles, const GridTicks& ticks, StopPoll& stop) {
   constexpr std::size_t block = 1 << 14;
   std::vector<Found> found((triangles.size() + block - 1) / block);
   tbb::parallel_for(std::size_t{0}, found.size(), [&](std::size_t b) {
+    if (stop()) return;
     for (const Triangle& t : triangles.subspan(b * block, std::min(block, triangles.size() - b * block)))
       TriangleRows(t, ticks, found[b]).find();
   });
 
+  if (stop()) return;
   start_.assign(ticks.rows() + 2, 0);
   for (const Found& f : found) {
     for (const Crossing& c : f.crossings) ++start_[c.row + 2];
@@ -155,10 +157,17 @@ RowSigns::RowSigns(std::span<const Triangle> triangles, const GridTicks& ticks) 
 
 std::span<const RowSigns::Touch> RowSigns::touches(std::size_t row) const {
   if (touches_.empty()) return {};
-  const auto r = static_cast<std::uint32_t>(row);
-  const auto first = std::lower_bound(touches_.begin(), touches_.end(), Touch{r, -1});
-  const auto last = std::find_if(first, touches_.end(), [r](const Touch& t) { return t.row != r; });
+  const auto first = std::lower_bound(touches_.begin(), touches_.end(), Touch{row, -1});
+  const auto last = std::find_if(first, touches_.end(), [row](const Touch& t) { return t.row != row; });
   return {first, last};
+}
+
+int RowSigns::sign(std::size_t row, std::int32_t node) const {
+  if (!touches_.empty() && std::binary_search(touches_.begin(), touches_.end(), Touch{row, node})) return 0;
+  const std::span<const Change> row_changes = changes(row);
+  const auto next = std::upper_bound(row_changes.begin(), row_changes.end(), node,
+                                     [](std::int32_t n, const Change& c) { return n < c.node; });
+  return next == row_changes.begin() || (next - 1)->winding == 0 ? 1 : -1;
 }
 
 }  // namespace meso::implicit

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "meso/base/triangle_stream.hpp"
+#include "stop_poll.hpp"
 
 namespace meso::implicit {
 
@@ -44,18 +45,21 @@ class RowSigns {
   };
   /// A node exactly on the surface.
   struct Touch {
-    std::uint32_t row;
+    std::uint64_t row;
     std::int32_t node;
     friend auto operator<=>(const Touch&, const Touch&) = default;
   };
 
-  /// Counts, along every row, the triangles entered and left: exact for a closed surface.
-  RowSigns(std::span<const Triangle> triangles, const GridTicks& ticks);
+  /// Counts, along every row, the triangles entered and left: exact for a closed surface. Cut short by `stop`, it means
+  /// nothing.
+  RowSigns(std::span<const Triangle> triangles, const GridTicks& ticks, StopPoll& stop);
 
   [[nodiscard]] std::span<const Change> changes(std::size_t row) const {
     return std::span(changes_).subspan(start_[row], start_[row + 1] - start_[row]);
   }
   [[nodiscard]] std::span<const Touch> touches(std::size_t row) const;
+  /// -1: enclosed, 0: on the surface, 1: outside.
+  [[nodiscard]] int sign(std::size_t row, std::int32_t node) const;
 
   /// Other numbers than those counted: `changes` of all rows one after the other, those of row r from start[r] on.
   void replace_changes(std::vector<std::size_t> start, std::vector<Change> changes) {

@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// RunOptions asked from many threads, one at a time.
+// RunOptions asked from many threads, one at a time; and as many threads as they grant.
 
+#include <tbb/info.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
 #include <atomic>
 #include <mutex>
 
@@ -25,5 +29,14 @@ class StopPoll {
   std::mutex mutex_;
   std::atomic<bool> stopped_ = false;
 };
+
+/// Runs `work` on options.jobs threads. More than there are cores would only earn a warning of TBB's.
+template <class Work>
+void with_jobs(const RunOptions& options, Work work) {
+  const int cores = tbb::info::default_concurrency();
+  tbb::task_arena arena(options.jobs == 0 ? cores
+                                          : static_cast<int>(std::min<unsigned>(options.jobs, unsigned(cores))));
+  arena.execute(work);
+}
 
 }  // namespace meso::implicit

@@ -78,7 +78,8 @@ TEST(BuildField, MeshesComeFromTheCallerOnce) {
     [[nodiscard]] implicit::Interval interval(const Box3&) const override { return implicit::Interval::everything(); }
     [[nodiscard]] double lipschitz() const override { return 1; }
     [[nodiscard]] Box3 bounds(double) const override { return {{-3, -1, -1}, {3, 1, 1}}; }
-    [[nodiscard]] std::unique_ptr<Prepared> prepare(const implicit::Grid&, const Affine&, double) const override {
+    [[nodiscard]] std::unique_ptr<Prepared> prepare(const implicit::Grid&, const Affine&, double,
+                                                    const RunOptions&) const override {
       return nullptr;
     }
   };

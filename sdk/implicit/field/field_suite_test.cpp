@@ -66,7 +66,9 @@ class ExternalBall final : public ExternalField {
     const double r = 1 + level;
     return r < 0 ? Box3{} : Box3{{-r, -r, -r}, {r, r, r}};
   }
-  std::unique_ptr<Prepared> prepare(const Grid&, const Affine&, double) const override { return nullptr; }
+  std::unique_ptr<Prepared> prepare(const Grid&, const Affine&, double, const RunOptions&) const override {
+    return nullptr;
+  }
 };
 
 std::vector<Subject> primitives() {

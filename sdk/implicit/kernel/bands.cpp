@@ -3,18 +3,57 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace meso::implicit {
 
 using expr::Op;
 
-std::vector<double> external_bands(const Graph& graph, Graph::Id root) {
-  std::vector<double> band(graph.size(), 0), result(graph.externals().size(), 0);
+namespace {
+
+constexpr std::size_t most_lines = 4;
+
+/// A step of a band, by more than it and the sample's own step may round.
+double rounded_up(double band) { return band * (1 + 8 * std::numeric_limits<double>::epsilon()); }
+
+}  // namespace
+
+double Band::for_root(double t) const {
+  if (everywhere_) return HUGE_VAL;
+  double band = 0;
+  for (const Line& line : lines_) band = std::max(band, line.slope * t + line.offset);
+  return band;
+}
+
+void Band::add(Line line) {
+  const auto covers = [](const Line& a, const Line& b) { return a.slope >= b.slope && a.offset >= b.offset; };
+  if (std::any_of(lines_.begin(), lines_.end(), [&](const Line& l) { return covers(l, line); })) return;
+  std::erase_if(lines_, [&](const Line& l) { return covers(line, l); });
+  if (lines_.size() == most_lines) {  // one that is above all is good enough
+    for (const Line& l : lines_) line = {std::max(line.slope, l.slope), std::max(line.offset, l.offset)};
+    lines_.clear();
+  }
+  lines_.push_back(line);
+}
+
+void Band::add(const Band& band, double factor, double offset) {
+  everywhere_ = everywhere_ || band.everywhere_;
+  for (const Line& l : band.lines_) {
+    const bool same = factor == 1 && offset == 0;
+    add(same ? l : Line{rounded_up(l.slope * factor), rounded_up(l.offset * factor + offset)});
+  }
+}
+
+std::vector<Band> external_bands(const Graph& graph, Graph::Id root) {
+  std::vector<Band> band(graph.size()), result(graph.externals().size());
+  band[root].add({1, 0});
   const std::vector<Graph::Id> order = graph.reachable(root);
   for (auto id = order.rbegin(); id != order.rend(); ++id) {
     if (graph.is_external(*id)) result[graph[*id].leaf - 3] = band[*id];
     const auto operands = graph.operands(*id);
-    const auto ask = [&](std::size_t k, double b) { band[operands[k]] = std::max(band[operands[k]], b); };
+    const auto ask = [&](std::size_t k, double factor, double offset) {
+      band[operands[k]].add(band[*id], factor, offset);
+    };
     // The operand of a sum or product with a number, if it is one.
     const auto number = std::find_if(operands.begin(), operands.end(), [&](Graph::Id o) { return graph.is_number(o); });
     const double c = number == operands.end() ? 0 : std::abs(graph[*number].number);
@@ -22,34 +61,34 @@ std::vector<double> external_bands(const Graph& graph, Graph::Id root) {
     switch (graph[*id].op) {
       case Op::min:
       case Op::max:
-        ask(1, band[*id]);
+        ask(1, 1, 0);
         [[fallthrough]];
       case Op::negate:
       case Op::abs:
-        ask(0, band[*id]);
+        ask(0, 1, 0);
         continue;
       case Op::select:
-        ask(0, HUGE_VAL);
-        ask(1, band[*id]);
-        ask(2, band[*id]);
+        band[operands[0]].everywhere_ = true;
+        ask(1, 1, 0);
+        ask(2, 1, 0);
         continue;
       case Op::add:
       case Op::subtract:
         if (number == operands.end()) break;
-        ask(other, band[*id] + c);
+        ask(other, 1, c);
         continue;
       case Op::multiply:
-        if (c == 0) break;
-        ask(other, band[*id] / c);
+        if (!(c > 0)) break;
+        ask(other, 1 / c, 0);
         continue;
       case Op::divide:
-        if (c == 0 || other != 0) break;
-        ask(0, band[*id] * c);
+        if (!(c > 0) || other != 0) break;
+        ask(0, c, 0);
         continue;
       default:
         break;
     }
-    for (std::size_t k = 0; k < operands.size(); ++k) ask(k, HUGE_VAL);
+    for (const Graph::Id operand : operands) band[operand].everywhere_ = true;
   }
   return result;
 }

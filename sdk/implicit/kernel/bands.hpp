@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// How exact the values of external fields must be for the signs of the whole to be right.
+// How exact the values of external fields must be for the whole to be right.
+//
+//   const Band band = external_bands(graph, root)[0];      // root = external - 0.3
+//   band.for_root(0) == 0.3;                               // the root's sign needs the external up to 0.3
+//   band.for_root(0.2) == 0.5;                             // up to there it is itself exact up to 0.2
 
 #include <vector>
 
@@ -8,8 +12,28 @@
 
 namespace meso::implicit {
 
-/// For each of graph.externals(): values beyond the band count by their sign only (ExternalField::prepare). Only the
-/// root's sign is asked for, so with root = external - 0.3 the band is 0.3. Infinity: its value matters everywhere.
-[[nodiscard]] std::vector<double> external_bands(const Graph& graph, Graph::Id root);
+/// The larger of some lines slope * t + offset, or infinity.
+class Band {
+ public:
+  /// Up to which magnitude an external has to be exact so that the root is exact, to the bit, up to the magnitude `t`.
+  /// Whatever is beyond may be replaced by anything of its sign that is beyond as well: then a root up to t is still
+  /// the same, and one beyond stays beyond, with its sign. Infinity: the value matters everywhere. t >= 0.
+  [[nodiscard]] double for_root(double t) const;
+  [[nodiscard]] bool is_finite() const { return !everywhere_; }
+
+ private:
+  friend std::vector<Band> external_bands(const Graph& graph, Graph::Id root);
+  struct Line {
+    double slope, offset;
+  };
+  void add(Line line);
+  void add(const Band& band, double factor, double offset);
+
+  bool everywhere_ = false;
+  std::vector<Line> lines_;
+};
+
+/// For each of graph.externals().
+[[nodiscard]] std::vector<Band> external_bands(const Graph& graph, Graph::Id root);
 
 }  // namespace meso::implicit

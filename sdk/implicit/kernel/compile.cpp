@@ -8,6 +8,7 @@
 
 #include "bands.hpp"
 #include "plan.hpp"
+#include "point_values.hpp"
 #include "separate.hpp"
 #include "slab_plan.hpp"
 
@@ -19,15 +20,22 @@ constexpr std::int32_t usual_slab = 8;
 
 class Source final : public GridSource {
  public:
-  Source(Graph graph, Graph::Id root, std::span<const double> bands, const Grid& grid, const CompileOptions& options)
+  Source(Graph graph, Graph::Id root, const Grid& grid, const CompileOptions& options)
       : plan_(std::move(graph), root, grid, row_kernels(options.instruction_set), options.max_table_bytes),
+        bands_(external_bands(plan_.graph(), root)),
         prunes_(options.pruning == Pruning::on ||
-                (options.pruning == Pruning::automatic && pruning_pays(plan_, usual_slab))),
-        signs_only_(std::any_of(bands.begin(), bands.end(), [](double b) { return std::isfinite(b); })) {
+                (options.pruning == Pruning::automatic && pruning_pays(plan_, usual_slab))) {}
+
+  /// `bands`: what the signs of rows need. False if the run was stopped.
+  [[nodiscard]] bool prepare(std::span<const Band> bands, const RunOptions& run) {
     for (std::size_t k = 0; k < bands.size(); ++k) {
       const ExternalLeaf& leaf = plan_.graph().externals()[k];
-      externals_.push_back(leaf.field->prepare(grid, leaf.field_from_world, bands[k]));
+      const double band = bands[k].for_root(0);
+      signs_only_ = signs_only_ || std::isfinite(band);
+      externals_.push_back(leaf.field->prepare(grid(), leaf.field_from_world, band, run));
+      if (!externals_.back()) return false;
     }
+    return true;
   }
 
   [[nodiscard]] const Grid& grid() const override { return plan_.grid(); }
@@ -36,6 +44,9 @@ class Source final : public GridSource {
 
   [[nodiscard]] const Plan& plan() const { return plan_; }
   [[nodiscard]] bool prunes() const { return prunes_; }
+  [[nodiscard]] PointValues point_values(std::vector<ExternalRows*> externals) const {
+    return {plan_.points(), bands_, std::move(externals), reach()};
+  }
   [[nodiscard]] std::vector<std::unique_ptr<ExternalRows>> external_rows() const {
     std::vector<std::unique_ptr<ExternalRows>> rows;
     for (const auto& external : externals_) rows.push_back(external->make_rows());
@@ -43,9 +54,24 @@ class Source final : public GridSource {
   }
 
  private:
+  /// The root's magnitude that needs every external up to four cells: more than what is beside its surface.
+  [[nodiscard]] double reach() const {
+    double least = HUGE_VAL;
+    for (std::size_t k = 0; k < bands_.size(); ++k) {
+      const Mat3& map = plan_.graph().externals()[k].field_from_world.linear;
+      double cell = 0;
+      for (std::size_t axis = 0; axis < 3; ++axis)
+        cell = std::max(cell, norm(map.column(axis)) * plan_.grid().spacing(axis));
+      const double slope = bands_[k].for_root(1) - bands_[k].for_root(0);
+      if (bands_[k].is_finite() && slope > 0) least = std::min(least, 4 * cell / slope);
+    }
+    return least;
+  }
+
   Plan plan_;
+  std::vector<Band> bands_;
   std::vector<std::unique_ptr<ExternalField::Prepared>> externals_;
-  bool prunes_, signs_only_;
+  bool prunes_, signs_only_ = false;
 };
 
 class Sampler final : public GridSampler {
@@ -55,10 +81,10 @@ class Sampler final : public GridSampler {
         plane_(plan_.plane_size()),
         plane_rows_(plan_.plane_rows(plane_.data())),
         plane_columns_(plan_.plane_columns(plane_.data())),
-        points_(plan_.points()),
         external_rows_(source.external_rows()),
+        external_pointers_(pointers(external_rows_)),
+        points_(source.point_values(external_pointers_)),
         samples_(static_cast<std::size_t>(plan_.grid().nodes[0])) {
-    for (const auto& rows : external_rows_) external_pointers_.push_back(rows.get());
     if (source.prunes()) {
       slab_.emplace(plan_, [this](auto steps, auto stands_for) {
         return std::make_unique<Program>(rows_program(steps, stands_for));
@@ -91,6 +117,11 @@ class Sampler final : public GridSampler {
   void values_at(std::span<const Vec3> points, double* out) override { points_.values_at(points, out); }
 
  private:
+  static std::vector<ExternalRows*> pointers(const std::vector<std::unique_ptr<ExternalRows>>& rows) {
+    std::vector<ExternalRows*> result;
+    for (const auto& r : rows) result.push_back(r.get());
+    return result;
+  }
   Program rows_program(std::span<const Graph::Id> steps, std::span<const Graph::Id> stands_for) {
     return plan_.rows(steps, plane_.data(), {external_pointers_, samples_}, stands_for);
   }
@@ -104,9 +135,10 @@ class Sampler final : public GridSampler {
 
   const Plan& plan_;
   AlignedArray plane_;
-  Program plane_rows_, plane_columns_, points_;
+  Program plane_rows_, plane_columns_;
   std::vector<std::unique_ptr<ExternalRows>> external_rows_;
   std::vector<ExternalRows*> external_pointers_;
+  PointValues points_;
   std::size_t samples_;
   std::optional<Program> rows_;
   std::optional<SlabPlan> slab_;
@@ -117,20 +149,29 @@ std::unique_ptr<GridSampler> Source::sampler() const { return std::make_unique<S
 
 }  // namespace
 
-std::unique_ptr<GridSource> compile(const Term& term, const Grid& grid, const CompileOptions& options) {
+std::unique_ptr<GridSource> compile(const Term& term, const Grid& grid, const CompileOptions& options,
+                                    const RunOptions& run, DiagnosticSink& sink) {
   assert(grid.nodes[0] >= 2 && grid.nodes[1] >= 2 && grid.nodes[2] >= 2);
   Graph graph;
   Graph::Id root = graph.from_term(term);
-  const std::vector<double> bands = external_bands(graph, root);
+  const std::vector<Band> bands = external_bands(graph, root);
   if (!options.strict_math) root = separate(graph, root, grid);
-  return std::make_unique<Source>(std::move(graph), root, bands, grid, options);
+  auto source = std::make_unique<Source>(std::move(graph), root, grid, options);
+  if (source->prepare(bands, run)) return source;
+  sink.report({.code = run.out_of_time() ? Code::limit_time : Code::cancelled});
+  return nullptr;
+}
+
+std::unique_ptr<GridSource> compile(const Term& term, const Grid& grid, const CompileOptions& options) {
+  DiagnosticSink nothing_can_fail;
+  return compile(term, grid, options, {.max_memory_bytes = ~std::uint64_t{0}}, nothing_can_fail);
 }
 
 void values(const Term& term, std::span<const Vec3> points, double* out, InstructionSet set) {
   Graph graph;
   const Graph::Id root = graph.from_term(term);
   const Plan plan(std::move(graph), root, Grid{.box = {{0, 0, 0}, {1, 1, 1}}}, row_kernels(set), 0);
-  plan.points().values_at(points, out);
+  plan.points().values_at(points, {}, out);
 }
 
 }  // namespace meso::implicit

@@ -122,7 +122,9 @@ class Doubled final : public ExternalField {
   Interval interval(const Box3& box) const override { return {2 * box.min.x + 1, 2 * box.max.x + 1}; }
   double lipschitz() const override { return 2; }
   Box3 bounds(double) const override { return {{-HUGE_VAL, -HUGE_VAL, -HUGE_VAL}, {HUGE_VAL, HUGE_VAL, HUGE_VAL}}; }
-  std::unique_ptr<Prepared> prepare(const Grid&, const Affine&, double) const override { return nullptr; }
+  std::unique_ptr<Prepared> prepare(const Grid&, const Affine&, double, const RunOptions&) const override {
+    return nullptr;
+  }
 };
 
 TEST(FlatTerm, ExternalLeavesMoveWithTheirMap) {

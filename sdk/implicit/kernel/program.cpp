@@ -53,6 +53,7 @@ class Program::Assembler {
     if (graph_.is_external(id)) {
       const std::size_t k = graph_[id].leaf - 3;
       instruction.leaf = &graph_.externals()[k];
+      instruction.external = static_cast<std::uint32_t>(k);
       instruction.rows = externals.rows.empty() ? nullptr : externals.rows[k];
     } else {
       instruction.kernel = kernels_.of_op[static_cast<std::size_t>(graph_[id].op)];
@@ -143,11 +144,20 @@ void Program::step(const Instruction& instruction, std::size_t i, std::size_t n,
       instruction.rows->row(static_cast<std::int32_t>(j), static_cast<std::int32_t>(k), static_cast<std::int32_t>(i),
                             static_cast<std::int32_t>(end), out);
   } else {
-    const double* const p = memory_.data();
-    for (std::size_t s = 0; s < samples_; ++s)
-      out[s] = instruction.leaf->field->value(instruction.leaf->field_from_world *
-                                              Vec3{p[s], p[chunk_ + s], p[2 * chunk_ + s]});
+    external_at_points(instruction, out);
   }
+}
+
+void Program::external_at_points(const Instruction& instruction, double* out) const {
+  if (!externals_at_points_.empty()) {
+    const double* const values = externals_at_points_[instruction.external].data() + first_point_;
+    std::copy(values, values + samples_, out);
+    return;
+  }
+  const double* const p = memory_.data();
+  for (std::size_t s = 0; s < samples_; ++s)
+    out[s] = instruction.leaf->field->value(instruction.leaf->field_from_world *
+                                            Vec3{p[s], p[chunk_ + s], p[2 * chunk_ + s]});
 }
 
 void Program::run(std::size_t begin, std::size_t end, std::size_t j, std::size_t k) {
@@ -166,9 +176,11 @@ void Program::sample(std::size_t begin, std::size_t end, std::size_t j, std::siz
   }
 }
 
-void Program::values_at(std::span<const Vec3> points, double* out) {
+void Program::values_at(std::span<const Vec3> points, std::span<const std::vector<double>> externals, double* out) {
   double* const coordinates = memory_.data();
+  externals_at_points_ = externals;
   for (std::size_t first = 0; first < points.size(); first += chunk_) {
+    first_point_ = first;
     samples_ = std::min(chunk_, points.size() - first);
     const std::size_t n = (samples_ + row_unit - 1) / row_unit * row_unit;
     for (std::size_t s = 0; s < n; ++s)

@@ -54,20 +54,23 @@ class Program {
   /// The root's values and signs. `values` and `inside` belong to sample 0.
   void sample(std::size_t begin, std::size_t end, std::size_t j, std::size_t k, float* values, std::uint16_t* inside);
 
-  /// The root's values at points. REQUIRES: a program without places for the coordinates.
-  void values_at(std::span<const Vec3> points, double* out);
+  /// The root's values at points. `externals`: those of each external leaf; without them, the fields are asked.
+  /// REQUIRES: a program without places for the coordinates.
+  void values_at(std::span<const Vec3> points, std::span<const std::vector<double>> externals, double* out);
 
  private:
   struct Instruction {
     Kernel kernel = nullptr;  ///< none: an external leaf
     const ExternalLeaf* leaf = nullptr;
     ExternalRows* rows = nullptr;
+    std::uint32_t external = 0;  ///< the number of the leaf
     std::uint32_t first_operand = 0, operands = 0;
     Operand out;
   };
   class Assembler;
 
   void step(const Instruction& instruction, std::size_t i, std::size_t n, std::size_t j, std::size_t k);
+  void external_at_points(const Instruction& instruction, double* out) const;
   std::span<const Input> inputs(const Instruction& instruction, std::size_t i, std::size_t j, std::size_t k);
 
   std::vector<Instruction> instructions_;
@@ -78,6 +81,8 @@ class Program {
   std::size_t chunk_ = 0;
   AlignedArray memory_;      ///< rows of one chunk; the first three for coordinates of points
   std::size_t samples_ = 0;  ///< of a row, or of the points at hand
+  std::span<const std::vector<double>> externals_at_points_;
+  std::size_t first_point_ = 0;  ///< of those at hand
 };
 
 }  // namespace meso::implicit

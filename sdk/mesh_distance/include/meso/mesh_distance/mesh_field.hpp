@@ -51,8 +51,8 @@ class MeshField final : public ExternalField {
 
   /// Signs of all nodes are found at once, distances when a row is asked for. The sign of a node is the same for every
   /// band, and that of value() where `field_from_grid` only scales and shifts. REQUIRES: the map can be inverted.
-  [[nodiscard]] std::unique_ptr<Prepared> prepare(const Grid& grid, const Affine& field_from_grid,
-                                                  double band) const override;
+  [[nodiscard]] std::unique_ptr<Prepared> prepare(const Grid& grid, const Affine& field_from_grid, double band,
+                                                  const RunOptions& run) const override;
 
  private:
   explicit MeshField(std::shared_ptr<const SignedMesh> mesh);

@@ -18,6 +18,8 @@
 #include <memory>
 #include <span>
 
+#include "meso/base/diagnostic.hpp"
+#include "meso/base/run_options.hpp"
 #include "meso/implicit/grid_source.hpp"
 #include "meso/implicit/term.hpp"
 
@@ -38,7 +40,11 @@ struct CompileOptions {
 /// Whether this machine has it.
 [[nodiscard]] bool is_supported(InstructionSet set);
 
-/// REQUIRES: a grid of at least two nodes along each axis; an instruction set that is supported.
+/// Empty after LIMIT_TIME or CANCELLED. REQUIRES: a grid of at least two nodes along each axis; an instruction set that
+/// is supported.
+[[nodiscard]] std::unique_ptr<GridSource> compile(const Term& term, const Grid& grid, const CompileOptions& options,
+                                                  const RunOptions& run, DiagnosticSink& sink);
+/// Without limits: never empty.
 [[nodiscard]] std::unique_ptr<GridSource> compile(const Term& term, const Grid& grid,
                                                   const CompileOptions& options = {});
 
