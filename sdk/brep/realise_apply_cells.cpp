@@ -129,7 +129,7 @@ class CellStep {
     std::map<std::uint32_t, std::size_t> by_cluster;
     const bool apart = operation() == ApplyOperation::difference;
     std::size_t most = 0;
-    for (std::size_t i = 0; i < cells_.cells.size() && most <= context_.max_boolean_solids; ++i) {
+    for (std::size_t i = 0; i < cells_.cells.size() && most <= context_.most_solids(); ++i) {
       if (!taken_[i] || clusters.is_alone(i)) continue;
       const Prototype& prototype = cells_.prototypes[cells_.cells[i].prototype];
       if (prototype.anchors.empty()) continue;

@@ -10,11 +10,13 @@
 
 #include "boolean.hpp"
 #include "face_moments.hpp"
+#include "solid_primitive.hpp"
 
 namespace meso::brep {
 namespace {
 
 constexpr double straight = 1 - 1e-12;  ///< cosine of what counts as parallel
+constexpr double across_axis = 1e-6;    ///< and of what counts as perpendicular
 
 Box3 grown(const Box3& box) {
   const Vec3 d{clear_distance, clear_distance, clear_distance};
@@ -61,6 +63,48 @@ TopoDS_Face with_wires(const TopoDS_Face& face, const std::vector<TopoDS_Shape>&
   return TopoDS::Face(result.Oriented(face.Orientation()));
 }
 
+/// A face of a prism: a plane with its outward normal, or a cylinder with its axis.
+struct Wall {
+  bool is_plane = true;
+  Vec3 direction, point;
+  TopoDS_Face face;
+};
+
+std::optional<Wall> wall_of(const TopoDS_Face& face) {
+  const BRepAdaptor_Surface surface(face, false);
+  if (surface.GetType() == GeomAbs_Cylinder)
+    return Wall{false, to_vec(surface.Cylinder().Axis().Direction()), to_vec(surface.Cylinder().Location()), face};
+  if (surface.GetType() != GeomAbs_Plane) return {};
+  const gp_Pln plane = surface.Plane();
+  const bool is_against = (face.Orientation() == TopAbs_REVERSED) == plane.Direct();
+  const Vec3 normal = to_vec(plane.Axis().Direction());
+  return Wall{true, is_against ? -normal : normal, to_vec(plane.Location()), face};
+}
+
+int wires_in(const TopoDS_Face& face) {
+  int wires = 0;
+  for (TopoDS_Iterator it(face); it.More(); it.Next()) wires += it.Value().ShapeType() == TopAbs_WIRE;
+  return wires;
+}
+
+/// No point of the edges, which are lines and circles or else sampled, is farther away.
+double reach_of(const TopoDS_Face& face, Vec3 centre) {
+  double reach = 0;
+  for (TopExp_Explorer it(face, TopAbs_EDGE); it.More(); it.Next()) {
+    const BRepAdaptor_Curve curve(TopoDS::Edge(it.Current()));
+    constexpr int steps = 16;
+    const double first = curve.FirstParameter(), step = (curve.LastParameter() - first) / steps;
+    double longest = 0;
+    for (int i = 0; i <= steps; ++i) {
+      const Vec3 p = to_vec(curve.Value(first + i * step));
+      reach = std::max(reach, norm(p - centre));
+      if (i > 0) longest = std::max(longest, norm(p - to_vec(curve.Value(first + (i - 1) * step))));
+    }
+    if (curve.GetType() != GeomAbs_Line) reach += longest / 8;  // an arc rises less than that above its chord
+  }
+  return reach;
+}
+
 std::vector<std::uint32_t> roots_of(std::vector<std::uint32_t> parents) {
   for (std::uint32_t i = 0; i < parents.size(); ++i) {
     std::uint32_t root = i;
@@ -90,20 +134,35 @@ struct Drill::BodyFace {
     normal = face.Orientation() == TopAbs_REVERSED ? -along : along;
   }
 
-  enum class Circle { within, beyond, across };
-  [[nodiscard]] Circle circle(Vec3 centre, double radius) {
+  enum class Outline { within, beyond, across };
+  /// Where an outline in this face's plane lies: `centre` and `radius` are those of a circle around it.
+  [[nodiscard]] Outline outline(const TopoDS_Face& piece, Vec3 centre, double radius) {
     if (inside == nullptr) look_closer();
+    const double clear = radius + clear_distance;
     for (std::size_t i = 0; i < edges.size(); ++i) {
-      const double clear = radius + clear_distance;
-      if (distance_to_box(edge_boxes[i], centre) > clear) continue;
-      if (distance_to_edge(edges[i], centre) <= clear) return Circle::across;
+      if (distance_to_box(edge_boxes[i], centre) > clear || distance_to_edge(edges[i], centre) > clear) continue;
+      if (!keeps_out(edges[i], piece)) return Outline::across;
     }
+    const TopExp_Explorer corner(piece, TopAbs_VERTEX);
     double u = 0, v = 0;
-    ElSLib::Parameters(plane, to_pnt(centre), u, v);
-    return inside->Perform(gp_Pnt2d(u, v)) == TopAbs_IN ? Circle::within : Circle::beyond;
+    ElSLib::Parameters(plane, BRep_Tool::Pnt(TopoDS::Vertex(corner.Current())), u, v);
+    return inside->Perform(gp_Pnt2d(u, v)) == TopAbs_IN ? Outline::within : Outline::beyond;
   }
 
  private:
+  /// The edge is clear of the piece's outline, and not within it.
+  static bool keeps_out(const TopoDS_Edge& edge, const TopoDS_Face& piece) {
+    const BRepAdaptor_Curve curve(edge);
+    const gp_Pnt p = curve.Value(curve.FirstParameter());
+    const gp_Pln plane = BRepAdaptor_Surface(piece, false).Plane();
+    double u = 0, v = 0;
+    ElSLib::Parameters(plane, p, u, v);
+    if (BRepTopAdaptor_FClass2d(piece, Precision::PConfusion()).Perform(gp_Pnt2d(u, v)) != TopAbs_OUT) return false;
+    for (TopExp_Explorer it(piece, TopAbs_EDGE); it.More(); it.Next())
+      if (exact_distance(it.Current(), edge) <= clear_distance) return false;
+    return true;
+  }
+
   void look_closer() {
     inside = std::make_unique<BRepTopAdaptor_FClass2d>(surface.face(), Precision::PConfusion());
     for (TopExp_Explorer it(surface.face(), TopAbs_EDGE); it.More(); it.Next()) {
@@ -113,10 +172,21 @@ struct Drill::BodyFace {
   }
 };
 
-/// A cylinder from `start` along `axis` (a unit vector).
+/// A prism from the plane of `start` along `axis` (a unit vector).
 struct Drill::Bore {
-  Vec3 start, axis;
+  Vec3 start, axis;  ///< `start` is the middle of a circle around the outline
   double length = 0, radius = 0;
+  TopoDS_Face end;  ///< at `start`, its normal along the axis
+
+  [[nodiscard]] Bore moved(const Affine& placement) const {
+    return {placement * start, placement.linear * axis, length, radius, TopoDS::Face(mapped(end, placement))};
+  }
+  /// The piece that begins so far along the axis.
+  [[nodiscard]] Bore piece(double begin, double long_) const {
+    Bore out = moved(Affine::from_translation(begin * axis));
+    out.length = long_;
+    return out;
+  }
 };
 
 /// Where a bore passes through a face of the body: `at` millimetres along its axis.
@@ -126,7 +196,7 @@ struct Drill::Crossing {
   bool enters = false;
 };
 
-/// A cylinder taken out of the body, from one face or end of the cutter to another.
+/// A prism taken out of the body, from one face or end of the cutter to another.
 struct Drill::Hole {
   Bore bore;
   std::array<std::optional<std::uint32_t>, 2> faces;  ///< of the body, where it is open
@@ -144,24 +214,38 @@ void Drill::list_faces() {
         faces_.emplace_back(TopoDS::Face(it.Current()), s, shells);
 }
 
-std::optional<Drill::Bore> Drill::bore_of(const Prototype& prototype) {
-  if (prototype.solids.size() != 1 || prototype.surfaces.size() != 3) return {};
-  std::optional<gp_Cylinder> wall;
-  std::vector<gp_Pln> ends;
+std::vector<Drill::Bore> Drill::bores_of(const Prototype& prototype) {
+  std::vector<Bore> out;
+  if (prototype.solids.size() != 1 || !prototype.is_simple) return out;
+  std::vector<Wall> walls;
   for (const CarrierSurface& surface : prototype.surfaces) {
-    const BRepAdaptor_Surface face(surface.face(), false);
-    if (face.GetType() == GeomAbs_Cylinder) wall = face.Cylinder();
-    if (face.GetType() == GeomAbs_Plane) ends.push_back(face.Plane());
+    const auto wall = wall_of(surface.face());
+    if (!wall) return out;
+    walls.push_back(*wall);
   }
-  if (!wall || ends.size() != 2) return {};
-  const Vec3 axis = to_vec(wall->Axis().Direction()), origin = to_vec(wall->Location());
-  std::array<double, 2> at{};
-  for (std::size_t i = 0; i < 2; ++i) {
-    if (std::fabs(dot(to_vec(ends[i].Axis().Direction()), axis)) < straight) return {};
-    at[i] = dot(to_vec(ends[i].Location()) - origin, axis);
+  for (const Wall& start : walls) {
+    if (!start.is_plane ||
+        std::ranges::any_of(out, [&](const Bore& b) { return dot(b.axis, start.direction) > straight; }))
+      continue;                          // the other end of a prism that is known
+    const Vec3 axis = -start.direction;  // that of a plane is its outward normal
+    const Wall* end = nullptr;
+    bool is_prism = true;
+    for (const Wall& wall : walls) {
+      if (&wall == &start) continue;
+      const double along = dot(wall.direction, axis);
+      if (wall.is_plane ? std::fabs(along) < across_axis : std::fabs(along) > straight) continue;
+      is_prism = is_prism && wall.is_plane && along > straight && end == nullptr;
+      end = &wall;
+    }
+    if (!is_prism || end == nullptr || wires_in(start.face) != 1) continue;
+    Bore bore{{}, axis, dot(end->point - start.point, axis), 0, TopoDS::Face(start.face.Reversed())};
+    const Box3 box = face_box(start.face);
+    bore.start = (box.min + box.max) / 2;
+    bore.start += dot(start.point - bore.start, axis) * axis;
+    bore.radius = reach_of(start.face, bore.start);
+    if (bore.length > clear_distance) out.push_back(bore);
   }
-  const double low = std::min(at[0], at[1]), high = std::max(at[0], at[1]);
-  return Bore{origin + low * axis, axis, high - low, wall->Radius()};
+  return out;
 }
 
 std::optional<std::vector<Drill::Crossing>> Drill::crossings(const Bore& bore, const CellSolids& cells,
@@ -180,9 +264,10 @@ std::optional<std::vector<Drill::Crossing>> Drill::crossings(const Bore& bore, c
     }
     const double at = dot(face.point - bore.start, bore.axis);
     if (at < -clear_distance || at > bore.length + clear_distance) continue;
-    const BodyFace::Circle circle = face.circle(bore.start + at * bore.axis, bore.radius);
-    if (circle == BodyFace::Circle::across) return {};
-    if (circle == BodyFace::Circle::within) out.push_back({at, f, along < 0});
+    const Bore there = bore.piece(at, 0);
+    const BodyFace::Outline outline = face.outline(there.end, there.start, bore.radius);
+    if (outline == BodyFace::Outline::across) return {};
+    if (outline == BodyFace::Outline::within) out.push_back({at, f, along < 0});
   }
   std::ranges::stable_sort(out, {}, &Crossing::at);
   return out;
@@ -194,7 +279,7 @@ std::optional<std::vector<Drill::Hole>> Drill::holes_between(const std::vector<C
   const auto add = [&](const Crossing* from, const Crossing* to) {
     const double begin = from != nullptr ? from->at : 0, end = to != nullptr ? to->at : bore.length;
     if (end - begin <= clear_distance) return false;
-    Hole hole{{bore.start + begin * bore.axis, bore.axis, end - begin, bore.radius}, {}};
+    Hole hole{bore.piece(begin, end - begin), {}};
     if (from != nullptr) hole.faces[0] = from->face;
     if (to != nullptr) hole.faces[1] = to->face;
     if (from != nullptr && to != nullptr && faces_[from->face].solid != faces_[to->face].solid) return false;
@@ -218,20 +303,23 @@ std::optional<std::vector<Drill::Hole>> Drill::holes_between(const std::vector<C
 }
 
 bool Drill::add(const CellSolids& cells, const CellSolid& cell) {
-  auto [known, fresh] = bores_.try_emplace(cell.prototype);
-  if (fresh)
-    if (const auto bore = bore_of(cells.prototypes[cell.prototype])) known->second = std::make_unique<Bore>(*bore);
-  if (known->second == nullptr) return false;
+  const auto [known, fresh] = bores_.try_emplace(cell.prototype);
+  if (fresh) known->second = bores_of(cells.prototypes[cell.prototype]);
+  if (known->second.empty()) return false;
   if (faces_.empty()) list_faces();
-  Bore bore = *known->second;
-  bore.start = cell.placement * bore.start;
-  bore.axis = cell.placement.linear * bore.axis;
+  for (const Bore& bore : known->second) {
+    const std::vector<Hole> holes = holes_of(bore.moved(cell.placement), cells, cell);
+    holes_.insert(holes_.end(), holes.begin(), holes.end());
+    if (!holes.empty()) return true;
+  }
+  return false;
+}
+
+/// None if a boolean must do it.
+std::vector<Drill::Hole> Drill::holes_of(const Bore& bore, const CellSolids& cells, const CellSolid& cell) {
   const auto found = crossings(bore, cells, cell);
-  if (!found) return false;
-  const auto holes = holes_between(*found, bore);
-  if (!holes || holes->empty()) return false;
-  holes_.insert(holes_.end(), holes->begin(), holes->end());
-  return true;
+  if (!found) return {};
+  return holes_between(*found, bore).value_or(std::vector<Hole>{});
 }
 
 Solids Drill::drilled() const {
@@ -244,17 +332,17 @@ Solids Drill::drilled() const {
   };
   std::vector<std::vector<TopoDS_Shape>> wires(faces_.size()), walls(parents.size());
   for (const Hole& hole : holes_) {
-    const gp_Ax2 frame(to_pnt(hole.bore.start), to_dir(hole.bore.axis));
-    BRepPrimAPI_MakeCylinder cylinder(frame, hole.bore.radius, hole.bore.length);
-    const std::array<TopoDS_Face, 2> ends{cylinder.Cylinder().BottomFace(), cylinder.Cylinder().TopFace()};
+    const Vec3 sweep = hole.bore.length * hole.bore.axis;
+    BRepPrimAPI_MakePrism prism(hole.bore.end, gp_Vec(sweep.x, sweep.y, sweep.z));
+    const std::array<TopoDS_Shape, 2> ends{prism.FirstShape(), prism.LastShape()};
     const std::uint32_t shell = faces_[hole.faces[0] ? *hole.faces[0] : *hole.faces[1]].shell;
-    for (TopExp_Explorer it(cylinder.Solid(), TopAbs_FACE); it.More(); it.Next()) {
+    for (TopExp_Explorer it(prism.Shape(), TopAbs_FACE); it.More(); it.Next()) {
       const auto end = static_cast<std::size_t>(it.Current().IsSame(ends[1]));
       if (!it.Current().IsSame(ends[end]) || !hole.faces[end]) {
         walls[shell].push_back(it.Current().Reversed());
         continue;
       }
-      // The end of the cylinder is a piece of the face, seen from the same side: its rim, reversed, bounds a hole.
+      // The end of the prism is a piece of the face, seen from the same side: its rim, reversed, bounds a hole.
       const TopExp_Explorer rim(it.Current(), TopAbs_WIRE);
       wires[*hole.faces[end]].push_back(rim.Current().Reversed());
     }

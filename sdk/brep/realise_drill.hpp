@@ -6,11 +6,12 @@
 //   if (!drill.add(cells, cell)) joined.push_back(...);   // left to a boolean
 //   Solids out = drill.drilled();
 //
-// A cutter that is a straight cylinder, perpendicular to every face of the body that it meets, all of these plane, and
-// its circles strictly within those faces: what it takes out are cylinders between faces, or between a face and its own
-// end. Each adds a circle to the faces at its ends, one wall, and a bottom where it is blind; nothing else of the body
-// changes, and the body stays as connected as it was. Cutters must keep clear of each other. Cost: about 0.2 ms a hole;
-// OpenCASCADE's cut takes ten, and more the more holes there are.
+// A cutter that is a straight prism (walls plane or cylindrical and parallel to its axis, one outline), perpendicular
+// to every face of the body that it meets, all of these plane, and its outline strictly within those faces: what it
+// takes out are prisms between faces, or between a face and its own end. Each adds its outline to the faces at its
+// ends, its walls, and a bottom where it is blind; nothing else of the body changes, and the body stays as connected as
+// it was. Cutters must keep clear of each other. Cost: about 0.2 ms a hole; OpenCASCADE's cut takes ten to thirty, and
+// more the more holes there are.
 
 #include <map>
 #include <memory>
@@ -38,16 +39,17 @@ class Drill {
   struct Hole;
 
   void list_faces();
-  [[nodiscard]] static std::optional<Bore> bore_of(const Prototype& prototype);
+  [[nodiscard]] static std::vector<Bore> bores_of(const Prototype& prototype);
+  [[nodiscard]] std::vector<Hole> holes_of(const Bore& bore, const CellSolids& cells, const CellSolid& cell);
   [[nodiscard]] std::optional<std::vector<Crossing>> crossings(const Bore& bore, const CellSolids& cells,
                                                                const CellSolid& cell);
   [[nodiscard]] std::optional<std::vector<Hole>> holes_between(const std::vector<Crossing>& crossings,
                                                                const Bore& bore) const;
 
   Solids body_;
-  std::vector<BodyFace> faces_;  ///< once a cylinder has come
+  std::vector<BodyFace> faces_;  ///< once a prism has come
   std::vector<Hole> holes_;
-  std::map<std::size_t, std::unique_ptr<Bore>> bores_;  ///< by prototype; null: no cylinder
+  std::map<std::size_t, std::vector<Bore>> bores_;  ///< by prototype: a box is a prism in three directions
 };
 
 }  // namespace meso::brep

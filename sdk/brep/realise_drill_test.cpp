@@ -125,5 +125,51 @@ TEST_F(Drill, MeshedHolesClose) {
   expect_body(made, "cells", 12000 - 24 * 27 * pi);
 }
 
+TEST_F(Drill, SquareHolesInAnyOfThreeDirections) {
+  const auto made = cut(plate, R"(<box x="-2" y="-3" z="-1" dx="4" dy="6" dz="7"/>)", six_by_four);
+  expect_body(made, "cells", 12000 - 24 * 24 * 5);
+  EXPECT_EQ(made->body.solids.size(), 1u);
+  expect_body(cut(plate, R"(<box x="-2" y="-3" z="2" dx="4" dy="6" dz="9"/>)", six_by_four), "cells",
+              12000 - 24 * 24 * 3);
+  // From the side.
+  expect_body(
+      cut(plate, R"(<box x="-2" y="-30" z="1" dx="4" dy="60" dz="3"/>)",
+          R"(<loop index="i" axis="x" count="6" start="5" spacing="10"/><loop index="j" axis="y" count="1" start="20" spacing="1"/>)"),
+      "cells", 12000 - 6 * 12 * 40.0);
+}
+
+TEST_F(Drill, SlotsNextToAnEdge) {
+  // Long slots whose circles would reach over the edge of the plate, which they themselves keep clear of.
+  const std::string slot = R"(<box x="-4" y="-1" z="-1" dx="8" dy="2" dz="7"/>)";
+  const auto made = cut(
+      plate, slot,
+      R"(<loop index="i" axis="x" count="6" start="5" spacing="10"/><loop index="j" axis="y" count="13" start="2" spacing="3"/>)");
+  expect_body(made, "cells", 12000 - 6 * 13 * 80);
+}
+
+TEST_F(Drill, AHoleAroundAHoleIsNotPutIn) {
+  // The cutter's outline goes all round a hole of the plate: nothing of that may be left.
+  const std::string holed =
+      R"(<difference><box dx="60" dy="40" dz="5"/><cylinder x1="20" y1="20" z1="-1" x2="20" y2="20" z2="6" radius="2"/></difference>)";
+  const auto made = cut(holed, R"(<box x="-5" y="-5" z="-1" dx="10" dy="10" dz="7"/>)", one);
+  expect_body(made, "boolean", 12000 - 500);
+  EXPECT_EQ(measure(made->body).faces, 10u);
+}
+
+TEST_F(Drill, SectorsThroughADiskAreTurnsOfOne) {
+  const auto made = realised(macrostructure(R"(<cylinder x1="0" y1="0" z1="0" x2="0" y2="0" z2="4" radius="10"/>)") +
+                             R"(<coordinateSystems><coordinateSystem id="polar"><axis name="r" kind="distance" x="1"/>
+         <axis name="phi" kind="circular" z="1"/><axis name="z" kind="linear" z="1"/></coordinateSystem></coordinateSystems>
+         <unitCells><unitCell id="u"><box dx="1" dy="1" dz="1"/><csg><box x="0.1" y="0.1" z="0.1" dx="0.8" dy="0.8"
+         dz="0.8"/></csg></unitCell></unitCells>
+         <patterns><pattern id="c" unitCell="u" coordinateSystem="polar" mapping="conformal">
+         <loop index="i" axis="r" count="2" start="3" spacing="3"/><loop index="j" axis="phi" count="24"
+         spacing="15deg"/><loop index="k" axis="z" count="1" start="-4" spacing="12"/></pattern></patterns>)" +
+                             part(R"(<apply pattern="c" operation="difference"/>)"));
+  const auto ring = [](double r0, double r1) { return (r1 * r1 - r0 * r0) * pi * 0.8 * 4; };
+  expect_body(made, "cells", 400 * pi - ring(3.3, 5.7) - ring(6.3, 8.7));
+  EXPECT_EQ(measure(made->body).faces, 3u + 48 * 4u);
+}
+
 }  // namespace
 }  // namespace meso::brep

@@ -22,6 +22,8 @@ struct FoldContext {
   std::size_t max_boolean_solids = 600;
 
   [[nodiscard]] ElementId where() const { return apply.id_in_source; }
+  /// Cutters, which hardly meet each other, cost a tenth of what solids cost that are united.
+  [[nodiscard]] std::size_t most_solids() const;
   /// False, and LIMIT_BOOLEANS, if that many solids are too many to be joined.
   [[nodiscard]] bool within_budget(std::size_t solids) const;
 };

@@ -83,7 +83,7 @@ TEST_F(Realise, EmptyPart) {
 
 TEST_F(Realise, TooManyBooleansAreRefused) {
   RealiseOptions options;
-  options.max_boolean_solids = 2;
+  options.max_boolean_solids = 0;
   EXPECT_FALSE(realised(block + balls(3, 5, 1) + part(R"(<apply pattern="c" operation="difference"/>)"), options));
   EXPECT_EQ(first_code(), Code::limit_booleans);
 }

@@ -31,7 +31,7 @@ struct RealiseOptions {
   double deflection_mm = 0.1;  ///< largest distance of the triangles from the exact surface
   double angle_rad = 0.5;      ///< largest turn along one segment
   RunOptions run{};
-  std::size_t max_boolean_solids = 600;  ///< that general booleans may have to join in one step
+  std::size_t max_boolean_solids = 600;  ///< that booleans may have to unite in one step; cutters: ten times
 };
 
 struct CellCounts {
