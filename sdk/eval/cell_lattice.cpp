@@ -10,7 +10,7 @@ namespace {
 bool is_constant(const std::optional<BoundExpression>& e) { return !e || e->level == constant_level; }
 
 bool is_regular(const LoopProgram& loop) {
-  return loop.places.empty() && !loop.cumulative && !loop.position && is_constant(loop.count) &&
+  return loop.places.empty() && !loop.scatter && !loop.cumulative && !loop.position && is_constant(loop.count) &&
          is_constant(loop.start) && is_constant(loop.spacing) &&
          (!loop.direction || std::all_of(loop.direction->begin(), loop.direction->end(),
                                          [](const BoundExpression& e) { return e.level == constant_level; }));

@@ -21,6 +21,12 @@ std::vector<double> slots_of(const PatternProgram& program, const PlacedCell& ce
     slots[program.axis_slot + a] = is_length ? cell.q[a] / scale : cell.q[a];
   }
   for (std::size_t i = 0; i < 3; ++i) slots[program.global_slot + i] = cell.global[i] / scale;
+  if (!program.loops.empty() && program.loops[0].scatter) {
+    const ScatterRecords& scatter = *program.loops[0].scatter;
+    DiagnosticSink unused;  // the walker has had the same values
+    (void)scatter.source->at_record(static_cast<std::size_t>(cell.index[0]), scatter.quantities, slots,
+                                    program.loops[0].place, program.evaluation->report(unused));
+  }
   return slots;
 }
 
@@ -44,7 +50,12 @@ NodeRules node_rules(const CellStream::Impl& impl, const PlacedCell& cell, const
     own = slots;
     const Vec3 global = impl.is_conformal() ? placed : (cell.world_from_cell * (scale * placed)) / scale;
     for (std::size_t i = 0; i < 3; ++i) own[program.node_global_slot + i] = global[i];
-    for (const Assign& assign : program.node_statements) {
+    for (const auto& statement : program.node_statements) {
+      if (const auto* sample = std::get_if<Sample>(&statement)) {
+        if (!sample->source->at_point(global, sample->quantities, own, sample->place, report)) return false;
+        continue;
+      }
+      const auto& assign = std::get<Assign>(statement);
       const auto value = eval::evaluate(assign.expression, own, report);
       if (!value) return false;
       own[assign.slot] = *value;

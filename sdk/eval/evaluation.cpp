@@ -7,6 +7,7 @@
 #include "body.hpp"
 #include "cell_stream_impl.hpp"
 #include "evaluation_impl.hpp"
+#include "field_source.hpp"
 #include "meso/base/number.hpp"
 
 namespace meso::eval {
@@ -83,6 +84,8 @@ std::optional<Affine> EvaluationData::affine(const Placement& placement, const R
 std::optional<Evaluation> Evaluation::make(const CheckedDocument& document, const EvaluateOptions& options,
                                            DiagnosticSink& sink) {
   auto data = std::make_shared<Impl>(Impl{{.checked = document, .run = options.run}});
+  data->distance = options.distance;
+  data->fields = std::make_shared<FieldCache>();
   if (!evaluate_parameters(*data, options.overrides, sink) || !evaluate_frames(*data, sink)) return std::nullopt;
   return Evaluation(std::move(data));
 }

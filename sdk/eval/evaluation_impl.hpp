@@ -17,6 +17,8 @@
 
 namespace meso::eval {
 
+class FieldCache;
+
 struct EvaluationData {
   CheckedDocument checked;
   RunOptions run;
@@ -24,6 +26,8 @@ struct EvaluationData {
   Scope scope;                     ///< their names
   std::map<std::string, std::shared_ptr<const CoordinateFrame>, std::less<>> frames;  ///< document unit
   std::shared_ptr<const CoordinateFrame> cartesian;
+  FindMacrostructureDistance distance;
+  std::shared_ptr<FieldCache> fields;
 
   [[nodiscard]] const Document& document() const { return checked.document(); }
   [[nodiscard]] LengthUnit unit() const { return document().unit; }

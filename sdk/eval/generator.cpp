@@ -19,10 +19,7 @@ class GeneratorCompiler {
 
   bool compile() {
     const Pattern& pattern = *program_.pattern;
-    if (pattern.scatter) {
-      report_(Code::not_yet_evaluated, {pattern.scatter->id_in_source, {}}, {"scatter"});
-      return false;
-    }
+    if (pattern.scatter && !add(*pattern.scatter)) return false;
     for (const Loop& loop : pattern.loops) {
       if (!add(loop)) return false;
     }
@@ -140,6 +137,21 @@ class GeneratorCompiler {
     return true;
   }
 
+  bool add(const Scatter& scatter) {
+    LoopProgram program;
+    program.place = {scatter.id_in_source, {}};
+    program.index_slot = index_slot();
+    program.scatter = compile_scatter(program_, scope_, report_);
+    if (!program.scatter) return false;
+    const ScatterRecords& records = *program.scatter;
+    program.initial.count =
+        static_cast<std::int64_t>(records.order.empty() ? records.source->records() : records.order.size());
+    std::fill(levels_.begin(), levels_.end(), level());
+    if (scatter.index) scope_.define(scatter.index->text, program.index_slot, level());
+    program_.loops.push_back(std::move(program));
+    return true;
+  }
+
   bool add(const PlacementList& list) {
     LoopProgram program;
     program.place = {list.id_in_source, {}};
@@ -166,6 +178,7 @@ class GeneratorCompiler {
       global_level = std::max(global_level, levels_[a]);
       if (axes()[a].kind == AxisKind::circular) program_.turn_level = std::max(program_.turn_level, levels_[a]);
     }
+    program_.global_level = global_level;
     static constexpr std::string_view names[] = {"global.x", "global.y", "global.z"};
     for (std::uint32_t i = 0; i < 3; ++i)
       scope_.define(names[i], static_cast<std::uint32_t>(program_.global_slot) + i, global_level);
@@ -182,7 +195,7 @@ class GeneratorCompiler {
 
 std::size_t generator_loops(const Pattern& pattern) {
   if (pattern.fill) return pattern.fill->ranges.size();
-  return pattern.list ? 1 : pattern.loops.size();
+  return pattern.list || pattern.scatter ? 1 : pattern.loops.size();
 }
 
 bool compile_generator(PatternProgram& program, Scope& scope, const Report& report) {

@@ -12,4 +12,8 @@ namespace meso::eval {
 /// Fills in the loops; afterwards `scope` knows the indices, the axes and global.x y z.
 [[nodiscard]] bool compile_generator(PatternProgram& program, Scope& scope, const Report& report);
 
+/// Reads the field of the pattern's scatter; afterwards `scope` knows what the pattern names of it.
+[[nodiscard]] std::optional<ScatterRecords> compile_scatter(PatternProgram& program, Scope& scope,
+                                                            const Report& report);
+
 }  // namespace meso::eval

@@ -152,13 +152,5 @@ TEST(Orient, AllAxesGiveRotations) {
   }
 }
 
-TEST(Later, IsToldAsSuch) {
-  const std::string field = R"(<vectorFields><vectorField id="f"><structure records="1"><component name="s"/>
-    <component name="px" role="position"/><component name="py" role="position"/><component name="pz" role="position"/>
-    <points/></structure><embedded>AAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAA=</embedded><interpolation method="nearest"/></vectorField></vectorFields>)";
-  EXPECT_THAT(faults_of(pattern_text("<scatter field='f'/>", box, "", field)), ElementsAre("NOT_YET_EVALUATED"));
-  EXPECT_THAT(faults_of(pattern_text(three + "<sample field='f'/>", box, "", field)), ElementsAre("NOT_YET_EVALUATED"));
-}
-
 }  // namespace
 }  // namespace meso::eval

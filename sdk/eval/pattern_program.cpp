@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "field_names.hpp"
 #include "generator.hpp"
 
 namespace meso::eval {
@@ -16,7 +17,7 @@ struct Write {
   Place place;
 };
 using Operation = std::variant<Write, const OrientInstruction*, const RotateInstruction*, const ScaleInstruction*,
-                               const TranslateInstruction*, const WhenInstruction*>;
+                               const TranslateInstruction*, const SampleInstruction*, const WhenInstruction*>;
 
 class StatementCompiler {
  public:
@@ -91,15 +92,11 @@ class StatementCompiler {
         operations.emplace_back(Write{p, &set->value, {set->id_in_source, "value"}});
         is_set_[p] = true;
         for (const std::size_t f : followers(p, is_set_)) operations.emplace_back(default_of(f));
-      } else if (const auto* sample = std::get_if<SampleInstruction>(&instruction)) {
-        report_(Code::not_yet_evaluated, {sample->id_in_source, "field"}, {"sampling a vector field"});
-        return false;
       } else {
         std::visit(
             [&](const auto& i) {
               using T = std::decay_t<decltype(i)>;
-              if constexpr (!std::is_same_v<T, SetInstruction> && !std::is_same_v<T, SampleInstruction>)
-                operations.emplace_back(&i);
+              if constexpr (!std::is_same_v<T, SetInstruction>) operations.emplace_back(&i);
             },
             instruction);
       }
@@ -107,11 +104,7 @@ class StatementCompiler {
     return true;
   }
 
-  std::uint32_t new_slots(std::size_t count, double value) {
-    const std::size_t first = program_.slots.size();
-    program_.slots.resize(first + count, value);
-    return static_cast<std::uint32_t>(first);
-  }
+  std::uint32_t new_slots(std::size_t count, double value) { return program_.add_slots(count, value); }
   std::uint32_t parameter_slot(std::size_t p) const { return static_cast<std::uint32_t>(program_.parameter_slot + p); }
 
   // A statement behind one that may drop the cell must run again whenever that one may decide otherwise.
@@ -203,6 +196,28 @@ class StatementCompiler {
     add_move(level, Translate{*offset});
     return true;
   }
+  bool add(const SampleInstruction* s) {
+    const auto& all = program_.evaluation->document().vector_fields;
+    const VectorField& field =
+        *std::find_if(all.begin(), all.end(), [&](const VectorField& f) { return f.id.text == s->field.text; });
+    Sample sample{program_.evaluation->fields->find(*program_.evaluation, field, true, report_),
+                  {s->id_in_source, "field"},
+                  static_cast<std::uint32_t>(program_.global_slot),
+                  {}};
+    if (!sample.source) return false;
+    int level = constant_level;
+    if (s->x) {
+      const auto point = vector(*s, 0, level);
+      if (!point) return false;
+      sample.point = *point;
+    } else {
+      level = program_.global_level;
+    }
+    sample.quantities = define_quantities(program_, scope_, field, std::max(level, floor_));
+    sampled_.push_back(sample);
+    add_statement(level, std::move(sample));
+    return true;
+  }
   bool add(const WhenInstruction* w) {
     const std::uint32_t slot = new_slots(1, 0);
     const auto level = assign(w->test.text, {w->id_in_source, "test"}, slot);
@@ -228,16 +243,24 @@ class StatementCompiler {
     static constexpr std::string_view names[] = {"global.x", "global.y", "global.z"};
     for (std::uint32_t i = 0; i < 3; ++i)
       node_scope.define(names[i], static_cast<std::uint32_t>(program_.node_global_slot) + i, constant_level);
+    for (Sample& sample : sampled_) {
+      if (node_sets_.empty()) break;
+      // At a node a field is known there, wherever the cell has sampled it.
+      sample.point = static_cast<std::uint32_t>(program_.node_global_slot);
+      for (const QuantitySlot& q : sample.quantities)
+        node_scope.define(sample.source->field().id.text + "." + q.quantity.name, q.slot, constant_level);
+      program_.node_statements.push_back(std::move(sample));
+    }
     for (const SetInstruction* set : node_sets_) {
       const std::size_t p = parameter_position(set->parameter);
       auto bound = node_scope.bind(set->value.text, {set->id_in_source, "value"}, unit(), report_);
       if (!bound) return false;
-      program_.node_statements.push_back({std::move(*bound), parameter_slot(p)});
+      program_.node_statements.push_back(Assign{std::move(*bound), parameter_slot(p)});
       is_set_[p] = true;
       for (const std::size_t f : followers(p, is_set_)) {
         auto follower = scope_.bind(parameters()[f].value.text, default_of(f).place, unit(), report_);
         if (!follower) return false;
-        program_.node_statements.push_back({std::move(*follower), parameter_slot(f)});
+        program_.node_statements.push_back(Assign{std::move(*follower), parameter_slot(f)});
       }
     }
     return true;
@@ -249,6 +272,7 @@ class StatementCompiler {
   std::vector<std::vector<std::size_t>> uses_;  ///< per parameter: those its default names
   std::vector<bool> is_set_;
   std::vector<const SetInstruction*> node_sets_;
+  std::vector<Sample> sampled_;
   int floor_ = constant_level;
   int frame_level_ = constant_level;
 };
@@ -288,6 +312,8 @@ std::shared_ptr<const PatternProgram> compile_pattern(std::shared_ptr<const Eval
   program->mapping = pattern.mapping.value_or(CellMapping::rigid);
   program->evaluation = std::move(evaluation);
   lay_out_slots(*program, generator_loops(pattern));
+
+  program->named_quantities = named_quantities(pattern, *program->cell);
 
   Scope scope = program->evaluation->scope;
   if (!compile_generator(*program, scope, report)) return nullptr;

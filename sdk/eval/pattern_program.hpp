@@ -9,10 +9,12 @@
 #include <array>
 #include <memory>
 #include <optional>
+#include <set>
 #include <variant>
 #include <vector>
 
 #include "evaluation_impl.hpp"
+#include "field_source.hpp"
 #include "meso/eval/coordinates.hpp"
 #include "meso/model/document.hpp"
 #include "scope.hpp"
@@ -28,6 +30,19 @@ struct LoopState {
   Vec3 direction;  ///< unit; zero along an axis or for a loop that only counts
 };
 
+/// The records that a scatter visits, in its order. The index of a cell is the number of its record.
+struct ScatterRecords {
+  std::shared_ptr<const FieldSource> source;
+  std::vector<std::uint64_t> order;  ///< empty: all, as they are
+  std::vector<QuantitySlot> quantities;
+  bool is_own_system = true;  ///< else the pattern's coordinates are the global place
+
+  [[nodiscard]] std::size_t record(std::int64_t position) const {
+    const auto p = static_cast<std::size_t>(position);
+    return order.empty() ? p : static_cast<std::size_t>(order[p]);
+  }
+};
+
 struct LoopProgram {
   Place place;  ///< of the element
   std::uint32_t index_slot = 0;
@@ -39,6 +54,7 @@ struct LoopProgram {
   std::int64_t first = 0;                   ///< of a fill range: its lowest n
   LoopState initial;                        ///< what the absent expressions leave unsaid
   std::vector<std::vector<double>> places;  ///< of a list: one row of coordinates per index
+  std::optional<ScatterRecords> scatter;
 };
 
 struct Assign {
@@ -51,6 +67,13 @@ struct Bound {
   Place place;  ///< of the bound
   std::uint32_t value, bound;
   bool upper;
+};
+/// Asks a field at the point in slots `point`, x y z.
+struct Sample {
+  std::shared_ptr<const FieldSource> source;
+  Place place;
+  std::uint32_t point;
+  std::vector<QuantitySlot> quantities;
 };
 struct When {
   std::uint32_t slot;
@@ -73,9 +96,9 @@ struct Translate {
 };
 struct Statement {
   int level = constant_level;
-  std::variant<Assign, Bound, When, Orient, Rotate, Scale, Translate> action;
+  std::variant<Assign, Bound, When, Sample, Orient, Rotate, Scale, Translate> action;
 
-  [[nodiscard]] bool moves() const { return action.index() >= 3; }
+  [[nodiscard]] bool moves() const { return action.index() >= 4; }
 };
 
 struct PatternProgram {
@@ -89,12 +112,22 @@ struct PatternProgram {
   std::size_t parameter_slot = 0, index_slot = 0, axis_slot = 0, global_slot = 0, node_global_slot = 0;
   std::vector<double> slots;  ///< as they are before the first cell
 
+  /// New slots behind all others.
+  std::uint32_t add_slots(std::size_t count, double value) {
+    const std::size_t first = slots.size();
+    slots.resize(first + count, value);
+    return static_cast<std::uint32_t>(first);
+  }
+
   std::vector<LoopProgram> loops;  ///< first outermost
   int turn_level = constant_level;
+  int global_level = constant_level;  ///< of P(q)
   std::vector<Statement> statements;
-  bool drops_cells = false;             ///< `when`, or an orientation with zero="drop"
-  std::vector<Assign> node_statements;  ///< `set at="node"` and the defaults that follow from it
-  bool sets_points = false;             ///< `set at="point"`
+  std::set<std::string> named_quantities;  ///< of fields
+  bool drops_cells = false;                ///< `when`, or an orientation with zero="drop"
+  std::vector<std::variant<Assign, Sample>>
+      node_statements;       ///< `set at="node"`, what it samples, what follows from it
+  bool sets_points = false;  ///< `set at="point"`
 
   [[nodiscard]] std::string cell_name(std::span<const std::int64_t> index) const;
 };

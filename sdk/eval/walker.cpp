@@ -143,6 +143,8 @@ bool Walker::run(const Statement& statement, std::size_t position) {
     return true;
   }
   if (current) return true;
+  if (const auto* sample = std::get_if<Sample>(&statement.action))
+    return sample->source->at_point(vector(sample->point), sample->quantities, slots_, sample->place, report(loops()));
   if (const auto* value = std::get_if<Assign>(&statement.action)) return assign(*value, position);
   const auto& bound = std::get<Bound>(statement.action);
   const double value = slots_[bound.value], limit = slots_[bound.bound];

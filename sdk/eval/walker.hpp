@@ -36,6 +36,7 @@ class Walker {
   [[nodiscard]] bool begin_places(std::size_t loop);
   [[nodiscard]] bool begin_direction(std::size_t loop);
   [[nodiscard]] bool move_to(std::size_t loop, std::int64_t index);
+  [[nodiscard]] bool move_to_record(const LoopProgram& program);
   [[nodiscard]] bool seek(std::uint64_t ordinal);
   [[nodiscard]] bool next();
   /// True if every index of `loop` holds equally many cells, and so on inwards.

@@ -88,8 +88,9 @@ bool Walker::move_to(std::size_t loop, std::int64_t index) {
       s.q += spacing;
     }
   }
-  s.index = index_[loop] = index;
-  index_value = static_cast<double>(index);
+  s.index = index;
+  index_[loop] = program.scatter ? static_cast<std::int64_t>(program.scatter->record(index)) : index;
+  index_value = static_cast<double>(index_[loop]);
   if (program.position && !evaluate(*program.position, s.q, loop + 1)) return false;
   if (!program.position && !program.cumulative) s.q = s.start + index_value * s.spacing;
   if (program.axis) slots_[program_.axis_slot + *program.axis] = s.q;
@@ -97,7 +98,20 @@ bool Walker::move_to(std::size_t loop, std::int64_t index) {
     const std::vector<double>& row = program.places[static_cast<std::size_t>(index)];
     std::copy(row.begin(), row.end(), slots_.begin() + static_cast<std::ptrdiff_t>(program_.axis_slot));
   }
-  return true;
+  return !program.scatter || move_to_record(program);
+}
+
+bool Walker::move_to_record(const LoopProgram& program) {
+  const ScatterRecords& records = *program.scatter;
+  const auto record = static_cast<std::size_t>(index_.front());
+  const std::span<double> q = std::span(slots_).subspan(program_.axis_slot, program_.frame->axes().size());
+  if (records.is_own_system) {
+    records.source->coordinates(record, q);
+  } else {
+    const Vec3 place = records.source->place(record);
+    for (std::size_t i = 0; i < 3; ++i) q[i] = place[i];
+  }
+  return records.source->at_record(record, records.quantities, slots_, program.place, report(1));
 }
 
 bool Walker::is_product(std::size_t loop) const {

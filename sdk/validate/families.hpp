@@ -82,7 +82,8 @@ void check_beams(Context& c, const BeamsBody& body, const Scope& scope);
                                                    const Element& element, std::string_view attribute,
                                                    const Name& name);
 
-/// The names under which expressions know the components of a field (without the field's id).
+/// The names under which expressions know the components of a field and what follows from them (without the field's
+/// id).
 [[nodiscard]] std::vector<std::string> component_names(const VectorField& field);
 
 }  // namespace meso

@@ -5,6 +5,7 @@
 #include <set>
 
 #include "families.hpp"
+#include "meso/model/field_quantities.hpp"
 #include "walk.hpp"
 
 namespace meso {
@@ -204,10 +205,8 @@ void check_interpolation(Context& c, const VectorField& field) {
 }  // namespace
 
 std::vector<std::string> component_names(const VectorField& field) {
-  if (field.macrostructure) return {"distance", "nx", "ny", "nz", "curvature"};
   std::vector<std::string> names;
-  if (field.structure)
-    for (const FieldComponent& component : field.structure->components) names.push_back(component.name.text);
+  for (FieldQuantity& quantity : field_quantities(field)) names.push_back(std::move(quantity.name));
   return names;
 }
 

@@ -36,6 +36,20 @@ class GeneratorCheck {
     if (!used_.insert(*position).second) c_.report(Code::axis_twice, element, "axis", {name.text});
     return &(*axes_)[*position];
   }
+  ///
+  void check_system(const Scatter& scatter, const VectorField& field) {
+    if (!field.structure || !pattern_.coordinate_system) return;
+    const auto system = std::visit(
+        [](const auto& location) -> std::string {
+          if constexpr (requires { location.coordinate_system; })
+            return location.coordinate_system ? location.coordinate_system->text : std::string();
+          return {};
+        },
+        field.structure->location);
+    if (system != pattern_.coordinate_system->text)
+      c_.report(Code::scatter_system, scatter, "field",
+                {field.id.text, system.empty() ? "none" : "'" + system + "'", pattern_.coordinate_system->text});
+  }
   ///
   void distance(const Element& element, std::string_view attribute, const Axis& axis, std::optional<double> value) {
     if (axis.kind == AxisKind::distance && value && *value < 0)
@@ -95,6 +109,7 @@ void GeneratorCheck::operator()(const Scatter& scatter) {
       names_.add(field->id.text + "." + component, "a component");
     }
     if (!field->structure) c_.report(Code::field_without_records, scatter, "field", {field->id.text});
+    check_system(scatter, *field);
   } else {
     record.open();
     names_.open();

@@ -16,9 +16,6 @@ class InstructionCheck {
     for (const char* name : {"global.x", "global.y", "global.z"}) point_.add(name, "the point's place");
   }
 
-  /// Before the first instruction: what a scatter has already sampled.
-  void know(const VectorField& field) { sample_components(field); }
-
   void operator()(const SetInstruction& e) {
     const bool is_cell = e.at.value_or(SetAt::cell) == SetAt::cell;
     const bool good = c_.check(e, "value", e.value, is_cell ? names_ : point_);
@@ -108,8 +105,6 @@ class InstructionCheck {
 
 void check_instructions(Context& c, const Pattern& pattern, const UnitCell* cell, Scope& names) {
   InstructionCheck check(c, cell, names);
-  if (pattern.scatter)
-    if (const VectorField* field = c.find(pattern.scatter->field)) check.know(*field);
   for (const Instruction& instruction : pattern.instructions) std::visit(check, instruction);
 }
 

@@ -30,9 +30,28 @@ struct Override {
   std::string id;
   std::string expression;
 };
+
+/// Where a macrostructure's surface is, for the fields that follow it. Implemented by an engine; safe to share.
+class MacrostructureDistance {
+ public:
+  /// Millimetres, negative inside; the outward unit normal of the nearest point; the mean curvature there, positive
+  /// where the body bulges.
+  struct Answer {
+    double distance = 0;
+    Vec3 normal;
+    double curvature = 0;
+  };
+  virtual ~MacrostructureDistance() = default;
+  [[nodiscard]] virtual Answer at(Vec3 p_mm) const = 0;
+};
+/// Null, with a diagnostic, if the engine cannot say.
+using FindMacrostructureDistance = std::function<std::shared_ptr<const MacrostructureDistance>(
+    const CheckedDocument&, const Macrostructure&, DiagnosticSink&)>;
+
 struct EvaluateOptions {
   std::vector<Override> overrides{};
   RunOptions run{};
+  FindMacrostructureDistance distance{};  ///< absent: fields of macrostructures are not realised
 };
 
 /// One copy of a unit cell. Valid only during the callback.

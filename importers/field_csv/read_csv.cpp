@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "meso/import_field_csv/read_csv.hpp"
+
+#include <charconv>
+
+namespace meso {
+namespace {
+
+constexpr std::size_t longest_quote = 40;  // bytes of the file in a message
+
+std::string_view trimmed(std::string_view text) {
+  const std::size_t first = text.find_first_not_of(" \t\r\"");
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(" \t\r\"") - first + 1);
+}
+
+std::optional<double> number(std::string_view text) {
+  if (text.starts_with('+')) text.remove_prefix(1);
+  double value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  return error == std::errc() && end == text.data() + text.size() ? std::optional(value) : std::nullopt;
+}
+
+/// "stress [MPa]": a name and a unit.
+fields::Column heading(std::string_view cell) {
+  const std::size_t open = cell.find_first_of("[(");
+  if (open == std::string_view::npos || open == 0 || (cell.back() != ']' && cell.back() != ')'))
+    return {fields::column_name(cell), {}};
+  return {fields::column_name(trimmed(cell.substr(0, open))),
+          std::string(trimmed(cell.substr(open + 1, cell.size() - open - 2)))};
+}
+
+class CsvReader {
+ public:
+  CsvReader(std::string_view text, const std::string& file, DiagnosticSink& sink)
+      : text_(text), file_(file), sink_(sink) {
+    if (text_.starts_with("\xEF\xBB\xBF")) text_.remove_prefix(3);
+  }
+
+  std::optional<fields::Table> read() {
+    fields::Table table;
+    std::vector<double> values;
+    std::string_view line;
+    std::size_t columns = 0;
+    while (next_line(line)) {
+      if (columns == 0) {
+        find_separator(line);
+        if (is_heading(line)) {
+          for (std::size_t at = 0; at <= line.size();) table.columns.push_back(heading(next_cell(line, at)));
+          columns = table.columns.size();
+          continue;
+        }
+      }
+      std::size_t found = 0;
+      for (std::size_t at = 0; at <= line.size(); ++found) {
+        const std::size_t begin = at;
+        const std::string_view cell = next_cell(line, at);
+        const auto value = number(cell);
+        if (!value || (columns > 0 && found == columns)) {
+          fault(line, begin, columns > 0 && found == columns ? "the end of the line" : "a number", cell);
+          return std::nullopt;
+        }
+        values.push_back(*value);
+      }
+      if (columns == 0) columns = found;
+      if (found < columns) {
+        fault(line, line.size(), std::to_string(columns) + " cells", std::to_string(found));
+        return std::nullopt;
+      }
+    }
+    if (values.empty()) {
+      sink_.report({.code = Code::field_file_empty, .where = {.file = file_}, .args = {"records"}});
+      return std::nullopt;
+    }
+    table.records = fields::Records::of(std::move(values), columns);
+    return table;
+  }
+
+ private:
+  bool next_line(std::string_view& line) {
+    while (at_ < text_.size()) {
+      const std::size_t end = std::min(text_.find('\n', at_), text_.size());
+      line = text_.substr(at_, end - at_);
+      at_ = end + 1;
+      ++line_;
+      if (!trimmed(line).empty() && !line.starts_with('#')) return true;
+    }
+    return false;
+  }
+  void find_separator(std::string_view line) {
+    const std::size_t at = line.find_first_of(",;\t");
+    if (at != std::string_view::npos) separator_ = line[at];
+  }
+  /// Moves `at` behind the cell and its separator; beyond the line's end after the last cell.
+  std::string_view next_cell(std::string_view line, std::size_t& at) const {
+    const std::size_t end = std::min(line.find(separator_, at), line.size());
+    const std::string_view cell = trimmed(line.substr(at, end - at));
+    at = end + 1;
+    return cell;
+  }
+  bool is_heading(std::string_view line) const {
+    for (std::size_t at = 0; at <= line.size();) {
+      if (!number(next_cell(line, at))) return true;
+    }
+    return false;
+  }
+  void fault(std::string_view line, std::size_t column, std::string expected, std::string_view found) {
+    sink_.report({.code = Code::field_file_syntax,
+                  .where = {.file = file_,
+                            .offset = static_cast<std::size_t>(line.data() - text_.data()) + column,
+                            .length = 1,
+                            .line = line_,
+                            .column = column + 1},
+                  .args = {std::move(expected), std::string(found.substr(0, longest_quote))}});
+  }
+
+  std::string_view text_;
+  const std::string& file_;
+  DiagnosticSink& sink_;
+  std::size_t at_ = 0, line_ = 0;
+  char separator_ = ',';
+};
+
+}  // namespace
+
+std::optional<fields::Table> read_field_csv(std::string_view text, const std::string& file, DiagnosticSink& sink) {
+  return CsvReader(text, file, sink).read();
+}
+
+}  // namespace meso

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "meso/import_field_csv/read_csv.hpp"
+
+#include <gmock/gmock.h>
+
+namespace meso {
+namespace {
+
+using testing::ElementsAre;
+
+std::vector<double> values(const fields::Table& table) {
+  std::vector<double> all;
+  for (std::size_t r = 0; r < table.records.rows(); ++r)
+    for (std::size_t c = 0; c < table.records.columns(); ++c) all.push_back(table.records(r, c));
+  return all;
+}
+
+fields::Table table_of(const std::string& text) {
+  DiagnosticSink sink;
+  auto table = read_field_csv(text, "t.csv", sink);
+  if (!table) throw std::invalid_argument(render(sink.diagnostics().at(0)));
+  return *table;
+}
+
+std::string fault_of(const std::string& text) {
+  DiagnosticSink sink;
+  EXPECT_FALSE(read_field_csv(text, "t.csv", sink));
+  EXPECT_EQ(sink.diagnostics().size(), 1U);
+  return render(sink.diagnostics().at(0));
+}
+
+TEST(FieldCsv, ReadsHeadingUnitsAndNumbers) {
+  const fields::Table table = table_of("x [mm], von-Mises (MPa)\n\n# a remark\n1,2e3\n-.5,+7\r\n");
+  ASSERT_EQ(table.columns.size(), 2U);
+  EXPECT_EQ(table.columns[0].name, "x");
+  EXPECT_EQ(table.columns[0].unit, "mm");
+  EXPECT_EQ(table.columns[1].name, "von_Mises");
+  EXPECT_EQ(table.columns[1].unit, "MPa");
+  EXPECT_THAT(values(table), ElementsAre(1, 2000, -0.5, 7));
+}
+
+TEST(FieldCsv, NeedsNoHeadingAndTakesOtherSeparators) {
+  const fields::Table table = table_of("1;2;3\n4;5;6");
+  EXPECT_TRUE(table.columns.empty());
+  EXPECT_THAT(values(table), ElementsAre(1, 2, 3, 4, 5, 6));
+  EXPECT_THAT(values(table_of("1\t2\n")), ElementsAre(1, 2));
+}
+
+TEST(FieldCsv, NumbersReadBackAsTheyWereWritten) {
+  EXPECT_THAT(values(table_of("0.1,4.9e-324,1.7976931348623157e308\n")),
+              ElementsAre(0.1, 4.9e-324, 1.7976931348623157e308));
+}
+
+TEST(FieldCsv, SaysWhereItIsWrong) {
+  EXPECT_THAT(fault_of("x,y\n1,2\n3,4x\n"),
+              testing::HasSubstr("t.csv:3:3: error FIELD_FILE_SYNTAX: expected a number, found '4x'"));
+  EXPECT_THAT(fault_of("1,2\n3\n"),
+              testing::HasSubstr("t.csv:2:2: error FIELD_FILE_SYNTAX: expected 2 cells, found '1'"));
+  EXPECT_THAT(fault_of("1,2\n3,4,5\n"),
+              testing::HasSubstr("t.csv:2:5: error FIELD_FILE_SYNTAX: expected the end of the line"));
+  EXPECT_THAT(fault_of("x,y\n1,\n"), testing::HasSubstr("expected a number, found ''"));
+  EXPECT_THAT(fault_of("x,y\n"), testing::HasSubstr("FIELD_FILE_EMPTY"));
+  EXPECT_THAT(fault_of(""), testing::HasSubstr("FIELD_FILE_EMPTY"));
+}
+
+}  // namespace
+}  // namespace meso

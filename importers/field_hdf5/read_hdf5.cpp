@@ -1,0 +1,261 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "meso/import_field_hdf5/read_hdf5.hpp"
+
+#include <algorithm>
+
+#include "hdf5_handle.hpp"
+
+namespace meso {
+namespace {
+
+using hdf5::Handle;
+
+constexpr hsize_t block_values = hsize_t{1} << 22;  // 32 MiB between two looks at the clock
+
+struct DataSet {
+  std::string name;
+  Handle set, type;
+  hsize_t rows = 0, columns = 1;
+  std::vector<std::string> components, units;
+};
+
+std::vector<std::string> texts_of(hid_t object, const char* attribute) {
+  if (H5Aexists(object, attribute) <= 0) return {};
+  const Handle a(H5Aopen(object, attribute, H5P_DEFAULT), H5Aclose);
+  if (!a) return {};
+  const Handle space(H5Aget_space(a.id()), H5Sclose), type(H5Aget_type(a.id()), H5Tclose);
+  const hssize_t count = H5Sget_simple_extent_npoints(space.id());
+  if (count < 1 || H5Tget_class(type.id()) != H5T_STRING) return {};
+  std::vector<std::string> result;
+  if (H5Tis_variable_str(type.id()) > 0) {
+    const Handle memory(H5Tcopy(type.id()), H5Tclose);
+    std::vector<char*> texts(static_cast<std::size_t>(count), nullptr);
+    if (H5Aread(a.id(), memory.id(), texts.data()) < 0) return {};
+    for (const char* text : texts) result.emplace_back(text != nullptr ? text : "");
+    H5Dvlen_reclaim(memory.id(), space.id(), H5P_DEFAULT, texts.data());
+    return result;
+  }
+  const std::size_t size = H5Tget_size(type.id());
+  std::string bytes(size * static_cast<std::size_t>(count), '\0');
+  if (H5Aread(a.id(), type.id(), bytes.data()) < 0) return {};
+  for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
+    std::string text = bytes.substr(i * size, size);
+    text.resize(std::min(text.find('\0'), text.size()));
+    text.resize(text.find_last_not_of(' ') + 1);
+    result.push_back(std::move(text));
+  }
+  return result;
+}
+
+class Hdf5Reader {
+ public:
+  Hdf5Reader(const std::filesystem::path& file, const RunOptions& run, DiagnosticSink& sink)
+      : name_(file.string()),
+        run_(run),
+        sink_(sink),
+        file_(H5Fopen(file.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose) {
+    if (!file_)
+      report(Code::import_unreadable, {name_, !std::filesystem::exists(file) ? "no such file"
+                                              : H5Fis_hdf5(file.c_str()) > 0 ? "it is damaged or cut short"
+                                                                             : "it is no HDF5 file"});
+  }
+
+  std::optional<fields::Table> table(const std::string& paths) {
+    if (!file_ || !open_all(paths)) return std::nullopt;
+    hsize_t columns = 0;
+    for (const DataSet& set : sets_) {
+      columns += set.columns;
+      if (set.rows == sets_[0].rows) continue;
+      report(Code::field_file_unsupported, {"'" + set.name + "' with " + std::to_string(set.rows) + " rows beside '" +
+                                            sets_[0].name + "' with " + std::to_string(sets_[0].rows)});
+      return std::nullopt;
+    }
+    if (sets_[0].rows == 0 || columns == 0) {
+      report(Code::field_file_empty, {"records"});
+      return std::nullopt;
+    }
+    fields::Table result;
+    name_columns(result);
+    if (auto mapped = map()) {
+      result.records = std::move(*mapped);
+      return result;
+    }
+    std::vector<double> values;
+    if (!allocate(values, sets_[0].rows * columns)) return std::nullopt;
+    hsize_t first = 0;
+    for (const DataSet& set : sets_) {
+      if (!read(set, H5T_NATIVE_DOUBLE, values.data(), first, columns)) return std::nullopt;
+      first += set.columns;
+    }
+    result.records = fields::Records::of(std::move(values), columns);
+    return result;
+  }
+
+  std::optional<std::vector<std::int64_t>> integers(const std::string& path) {
+    if (!file_ || !open_all(path)) return std::nullopt;
+    const DataSet& set = sets_[0];
+    if (sets_.size() != 1 || H5Tget_class(set.type.id()) != H5T_INTEGER) {
+      report(Code::field_file_unsupported, {"'" + path + "' in place of one data set of integers"});
+      return std::nullopt;
+    }
+    std::vector<std::int64_t> values;
+    if (!allocate(values, set.rows * set.columns) || !read(set, H5T_NATIVE_INT64, values.data(), 0, set.columns))
+      return std::nullopt;
+    return values;
+  }
+
+ private:
+  void report(Code code, std::vector<std::string> args) {
+    const bool has_place = code != Code::import_unreadable;
+    sink_.report({.code = code, .where = {.file = has_place ? name_ : ""}, .args = std::move(args)});
+  }
+
+  template <class T>
+  bool allocate(std::vector<T>& values, hsize_t count) {
+    if (count > run_.max_memory_bytes / sizeof(T)) {
+      sink_.report({.code = Code::limit_memory, .args = {std::to_string(run_.max_memory_bytes >> 20) + " MiB"}});
+      return false;
+    }
+    values.resize(count);
+    return true;
+  }
+
+  bool open_all(const std::string& paths) {
+    for (std::size_t at = 0; at <= paths.size();) {
+      const std::size_t end = std::min(paths.find(',', at), paths.size());
+      if (!open(paths.substr(at, end - at))) return false;
+      at = end + 1;
+    }
+    if (!sets_.empty()) return true;
+    report(Code::field_file_empty, {"data set '" + paths + "'"});
+    return false;
+  }
+  bool open(const std::string& path) {
+    const Handle object(H5Oopen(file_.id(), path.empty() ? "/" : path.c_str(), H5P_DEFAULT), H5Oclose);
+    if (!object) {
+      report(Code::field_file_empty, {"data set '" + path + "'"});
+      return false;
+    }
+    if (H5Iget_type(object.id()) == H5I_DATASET) return add(path);
+    is_group_ = true;
+    std::vector<std::string> names;
+    H5Literate(
+        object.id(), H5_INDEX_NAME, H5_ITER_INC, nullptr,
+        [](hid_t, const char* name, const H5L_info_t*, void* all) -> herr_t {
+          static_cast<std::vector<std::string>*>(all)->emplace_back(name);
+          return 0;
+        },
+        &names);
+    for (const std::string& name : names) {
+      const std::string inner = (path == "/" || path.empty() ? "" : path) + "/" + name;
+      const Handle one(H5Oopen(file_.id(), inner.c_str(), H5P_DEFAULT), H5Oclose);
+      if (one && H5Iget_type(one.id()) == H5I_DATASET && !add(inner)) return false;
+    }
+    return true;
+  }
+  bool add(const std::string& path) {
+    Handle set(H5Dopen2(file_.id(), path.c_str(), H5P_DEFAULT), H5Dclose);
+    Handle type(H5Dget_type(set.id()), H5Tclose);
+    const Handle space(H5Dget_space(set.id()), H5Sclose);
+    const H5T_class_t kind = H5Tget_class(type.id());
+    const int dimensions = H5Sget_simple_extent_ndims(space.id());
+    if ((kind != H5T_FLOAT && kind != H5T_INTEGER) || dimensions < 1 || dimensions > 2) {
+      report(Code::field_file_unsupported,
+             {"the data set '" + path + "' of " +
+              (kind == H5T_FLOAT || kind == H5T_INTEGER ? std::to_string(dimensions) + " dimensions"
+                                                        : std::string("something else than numbers"))});
+      return false;
+    }
+    hsize_t size[2]{0, 1};
+    H5Sget_simple_extent_dims(space.id(), size, nullptr);
+    auto components = texts_of(set.id(), "components");
+    auto units = texts_of(set.id(), H5Aexists(set.id(), "unit") > 0 ? "unit" : "units");
+    sets_.push_back({path, std::move(set), std::move(type), size[0], size[1], std::move(components), std::move(units)});
+    return true;
+  }
+
+  /// names where every data set has them, or where they come from a group.
+  void name_columns(fields::Table& table) const {
+    const bool all_named =
+        std::all_of(sets_.begin(), sets_.end(), [](const DataSet& s) { return s.components.size() == s.columns; });
+    if (!all_named && !is_group_) return;
+    for (const DataSet& set : sets_) {
+      const std::string own = fields::column_name(set.name.substr(set.name.rfind('/') + 1));
+      for (std::size_t c = 0; c < set.columns; ++c) {
+        const std::string unit = set.units.size() == set.columns ? set.units[c]
+                                 : set.units.size() == 1         ? set.units[0]
+                                                                 : "";
+        table.columns.push_back({set.components.size() == set.columns ? fields::column_name(set.components[c])
+                                 : set.columns == 1                   ? own
+                                                                      : own + "_" + std::to_string(c + 1),
+                                 unit});
+      }
+    }
+  }
+
+  /// One data set of doubles in one piece needs no reading.
+  std::optional<fields::Records> map() const {
+    if (sets_.size() != 1 || H5Tequal(sets_[0].type.id(), H5T_IEEE_F64LE) <= 0) return std::nullopt;
+    const haddr_t offset = H5Dget_offset(sets_[0].set.id());
+    if (offset == HADDR_UNDEF) return std::nullopt;
+    std::string error;
+    auto file = fields::MappedFile::open(name_, error);
+    if (!file) return std::nullopt;
+    return fields::Records::map(std::move(file),
+                                {.offset = offset, .rows = sets_[0].rows, .columns = sets_[0].columns});
+  }
+
+  /// Into columns `first` ... of rows of `width` numbers, in blocks of rows.
+  bool read(const DataSet& set, hid_t number, void* values, hsize_t first, hsize_t width) {
+    const Handle file_space(H5Dget_space(set.set.id()), H5Sclose);
+    const hsize_t extent[2]{set.rows, width};
+    const Handle memory_space(H5Screate_simple(2, extent, nullptr), H5Sclose);
+    const hsize_t step = std::max<hsize_t>(1, block_of(set));
+    for (hsize_t row = 0; row < set.rows; row += step) {
+      if (run_.should_stop()) {
+        sink_.report({.code = run_.out_of_time() ? Code::limit_time : Code::cancelled});
+        return false;
+      }
+      const hsize_t rows = std::min(step, set.rows - row);
+      const hsize_t from[2]{row, 0}, into[2]{row, first}, count[2]{rows, set.columns};
+      H5Sselect_hyperslab(file_space.id(), H5S_SELECT_SET, from, nullptr, count, nullptr);
+      H5Sselect_hyperslab(memory_space.id(), H5S_SELECT_SET, into, nullptr, count, nullptr);
+      if (H5Dread(set.set.id(), number, memory_space.id(), file_space.id(), H5P_DEFAULT, values) >= 0) continue;
+      report(Code::field_file_truncated, {"in the data set '" + set.name + "', or it is damaged there"});
+      return false;
+    }
+    return true;
+  }
+  /// Whole chunks, so that none is unpacked twice.
+  static hsize_t block_of(const DataSet& set) {
+    const Handle list(H5Dget_create_plist(set.set.id()), H5Pclose);
+    const hsize_t rows = block_values / std::max<hsize_t>(1, set.columns);
+    hsize_t chunk[2]{1, 1};
+    if (H5Pget_layout(list.id()) != H5D_CHUNKED || H5Pget_chunk(list.id(), 2, chunk) < 1) return rows;
+    return (rows + chunk[0] - 1) / chunk[0] * chunk[0];
+  }
+
+  std::string name_;
+  const RunOptions& run_;
+  DiagnosticSink& sink_;
+  Handle file_;
+  std::vector<DataSet> sets_;
+  bool is_group_ = false;
+};
+
+}  // namespace
+
+std::optional<fields::Table> read_field_hdf5(const std::filesystem::path& file, const std::string& path,
+                                             const RunOptions& run, DiagnosticSink& sink) {
+  const hdf5::Session session;
+  return Hdf5Reader(file, run, sink).table(path);
+}
+
+std::optional<std::vector<std::int64_t>> read_field_hdf5_integers(const std::filesystem::path& file,
+                                                                  const std::string& path, const RunOptions& run,
+                                                                  DiagnosticSink& sink) {
+  const hdf5::Session session;
+  return Hdf5Reader(file, run, sink).integers(path);
+}
+
+}  // namespace meso

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: Apache-2.0
+// R-6.5a: which records a scatter visits, and in which order.
+#include <algorithm>
+#include <cmath>
+
+#include "field_names.hpp"
+#include "generator.hpp"
+#include "meso/base/number.hpp"
+#include "meso/fields/point_search.hpp"
+
+namespace meso::eval {
+namespace {
+
+class ScatterCompiler {
+ public:
+  ScatterCompiler(PatternProgram& program, Scope& scope, const Report& report)
+      : program_(program), scope_(scope), report_(report), scatter_(*program.pattern->scatter) {}
+
+  bool compile(ScatterRecords& records) {
+    const auto& data = *program_.evaluation;
+    const auto& all = data.document().vector_fields;
+    const VectorField& field =
+        *std::find_if(all.begin(), all.end(), [&](const VectorField& f) { return f.id.text == scatter_.field.text; });
+    records.source = data.fields->find(data, field, false, report_);
+    if (!records.source) return false;
+    records.is_own_system = &records.source->system() == program_.frame.get();
+    records.quantities = define_quantities(program_, scope_, field, 0);
+    return sort(records) && thin(records);
+  }
+
+ private:
+  bool stop_is_asked(std::size_t done) const {
+    constexpr std::size_t poll_mask = 0xFFFF;
+    const RunOptions& run = program_.evaluation->run;
+    if ((done & poll_mask) != 0 || !run.should_stop()) return false;
+    report_.sink.report({.code = run.out_of_time() ? Code::limit_time : Code::cancelled});
+    return true;
+  }
+
+  bool sort(ScatterRecords& records) {
+    if (!scatter_.sort) return true;
+    const Place place{scatter_.sort->id_in_source, "by"};
+    const auto by = scope_.bind(scatter_.sort->by.text, place, program_.evaluation->unit(), report_);
+    if (!by) return false;
+    std::vector<double> keys(records.source->records());
+    std::vector<double> slots = program_.slots;
+    for (std::size_t r = 0; r < keys.size(); ++r) {
+      if (stop_is_asked(r)) return false;
+      Report at_record = report_;
+      at_record.related.push_back({report_.source.span(scatter_.id_in_source), "in record " + std::to_string(r)});
+      if (!records.source->at_record(r, records.quantities, slots, place, at_record)) return false;
+      const auto key = evaluate(*by, slots, at_record);
+      if (!key) return false;
+      keys[r] = *key;
+    }
+    fill_order(records);
+    const bool descends = scatter_.sort->order == SortOrder::descending;
+    std::stable_sort(records.order.begin(), records.order.end(), [&](std::uint64_t a, std::uint64_t b) {
+      return descends ? keys[a] > keys[b] : keys[a] < keys[b];
+    });
+    return true;
+  }
+
+  bool thin(ScatterRecords& records) {
+    if (!scatter_.thin) return true;
+    const Place place{scatter_.thin->id_in_source, "distance"};
+    const auto distance = program_.evaluation->value(scatter_.thin->distance, place, report_);
+    if (!distance) return false;
+    if (*distance < 0) {
+      report_(Code::value_negative, place, {"distance", format_number(*distance)});
+      return false;
+    }
+    fill_order(records);
+    std::vector<Vec3> points;
+    points.reserve(records.order.size());
+    for (const std::uint64_t r : records.order) {
+      if (stop_is_asked(points.size())) return false;
+      points.push_back(records.source->place(static_cast<std::size_t>(r)));
+    }
+    const std::vector<std::size_t> kept = fields::thin(points, *distance);
+    std::vector<std::uint64_t> order;
+    order.reserve(kept.size());
+    for (const std::size_t position : kept) order.push_back(records.order[position]);
+    records.order = std::move(order);
+    return true;
+  }
+  static void fill_order(ScatterRecords& records) {
+    if (!records.order.empty()) return;
+    records.order.resize(records.source->records());
+    for (std::size_t r = 0; r < records.order.size(); ++r) records.order[r] = r;
+  }
+
+  PatternProgram& program_;
+  Scope& scope_;
+  const Report& report_;
+  const Scatter& scatter_;
+};
+
+}  // namespace
+
+std::optional<ScatterRecords> compile_scatter(PatternProgram& program, Scope& scope, const Report& report) {
+  ScatterRecords records;
+  if (!ScatterCompiler(program, scope, report).compile(records)) return std::nullopt;
+  return records;
+}
+
+}  // namespace meso::eval

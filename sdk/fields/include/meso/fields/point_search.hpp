@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// Nearest records of a cloud of points.
+//
+//   const PointSearch search(points);
+//   search.nearest({1, 2, 3});                // the lower number where two are equally near
+//   search.inverse_distance({1, 2, 3}, 2);    // Shepard's weights over the eight nearest
+//
+// A kd-tree (nanoflann) over a copy of the points: 24 bytes and an index each. Building is O(n log n), a look-up
+// O(log n). Immutable and safe to share. REQUIRES: at least one point; finite coordinates.
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "meso/base/vec.hpp"
+#include "meso/fields/stencil.hpp"
+
+namespace meso::fields {
+
+class PointSearch {
+ public:
+  explicit PointSearch(std::vector<Vec3> points);
+  PointSearch(PointSearch&&) noexcept;
+  ~PointSearch();
+
+  [[nodiscard]] std::int64_t nearest(Vec3 p) const;
+  [[nodiscard]] Stencil inverse_distance(Vec3 p, double power) const;
+  [[nodiscard]] const Box3& box() const;
+
+ private:
+  struct Tree;
+  std::unique_ptr<Tree> tree_;
+};
+
+/// Numbers of the points that are kept, in order: each farther than `distance` from all that were kept before it.
+/// O(n) by a grid of that width.
+[[nodiscard]] std::vector<std::size_t> thin(std::span<const Vec3> points, double distance);
+
+}  // namespace meso::fields
