@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: Apache-2.0
+// The files were written by h5py (make_fixtures.py): another writer than ours.
+#include "meso/import_field_hdf5/read_hdf5.hpp"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <fstream>
+
+namespace meso {
+namespace {
+
+std::string fixture(const std::string& name) {
+  return std::string(MESO_SOURCE_DIR) + "/importers/field_hdf5/fixtures/" + name;
+}
+std::string bytes_of(const std::string& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+std::string fault_of(const std::string& file, const std::string& path, const RunOptions& run = {}) {
+  DiagnosticSink sink;
+  EXPECT_FALSE(read_field_hdf5(file, path, run, sink));
+  EXPECT_EQ(sink.diagnostics().size(), 1U);
+  return sink.diagnostics().empty() ? "" : render(sink.diagnostics()[0]);
+}
+
+// value(r, c) = r + c / 8, in every data set.
+class Hdf5 : public testing::TestWithParam<const char*> {};
+TEST_P(Hdf5, ReadsEveryLayoutAndType) {
+  DiagnosticSink sink;
+  const auto table = read_field_hdf5(fixture("layouts.h5"), GetParam(), {}, sink);
+  ASSERT_TRUE(table) << render(sink.diagnostics().at(0));
+  ASSERT_EQ(table->records.rows(), 100U);
+  ASSERT_EQ(table->records.columns(), 3U);
+  EXPECT_TRUE(table->columns.empty());
+  for (std::size_t r = 0; r < 100; ++r)
+    for (std::size_t c = 0; c < 3; ++c)
+      EXPECT_EQ(table->records(r, c), static_cast<double>(r) + static_cast<double>(c) / 8);
+}
+INSTANTIATE_TEST_SUITE_P(Layouts, Hdf5,
+                         testing::Values("/contiguous", "/chunked", "/float", "/big", "/group/first,/group/second"));
+
+TEST(Hdf5Names, ComeFromAttributesAndGroups) {
+  DiagnosticSink sink;
+  const auto named = read_field_hdf5(fixture("layouts.h5"), "/named", {}, sink);
+  ASSERT_TRUE(named);
+  EXPECT_EQ(named->columns.at(1).name, "syy");
+  EXPECT_EQ(named->columns.at(1).unit, "MPa");
+  const auto group = read_field_hdf5(fixture("layouts.h5"), "/group", {}, sink);
+  ASSERT_TRUE(group);
+  ASSERT_EQ(group->columns.size(), 3U);
+  EXPECT_EQ(group->columns[0].name, "first_1");
+  EXPECT_EQ(group->columns[2].name, "second");
+  const auto integers = read_field_hdf5_integers(fixture("layouts.h5"), "/cells", {}, sink);
+  ASSERT_TRUE(integers);
+  EXPECT_THAT(*integers, testing::ElementsAre(0, 1, 2, 3, 1, 2, 3, 4));
+}
+
+TEST(Hdf5Names, OurFilesComeBack) {
+  fields::Table table;
+  table.columns = {{"x", "mm"}, {"stress", "MPa"}};
+  table.records = fields::Records::of({1, 2, 0.1, 4, 5, -6}, 2);
+  const std::string file = testing::TempDir() + "written.h5";
+  DiagnosticSink sink;
+  ASSERT_TRUE(write_field_hdf5(table, file, sink));
+  const auto back = read_field_hdf5(file, "/records", {}, sink);
+  ASSERT_TRUE(back);
+  EXPECT_EQ(back->columns.at(1).name, "stress");
+  EXPECT_EQ(back->columns.at(0).unit, "mm");
+  EXPECT_EQ(back->records(1, 0), 0.1);
+  EXPECT_EQ(back->records(2, 1), -6);
+  const std::string first = bytes_of(file);
+  ASSERT_TRUE(write_field_hdf5(table, file, sink));
+  EXPECT_EQ(bytes_of(file), first);
+}
+
+TEST(Hdf5Faults, AreReportedOnce) {
+  EXPECT_THAT(fault_of("/nowhere.h5", "/a"), testing::HasSubstr("IMPORT_UNREADABLE"));
+  EXPECT_THAT(fault_of(fixture("layouts.h5"), "/nothing"), testing::HasSubstr("no data set '/nothing'"));
+  EXPECT_THAT(fault_of(fixture("layouts.h5"), "/texts"), testing::HasSubstr("FIELD_FILE_UNSUPPORTED"));
+  EXPECT_THAT(fault_of(fixture("layouts.h5"), "/cube"), testing::HasSubstr("of 3 dimensions"));
+  EXPECT_THAT(fault_of(fixture("layouts.h5"), "/contiguous,/cells"), testing::HasSubstr("with 2 rows beside"));
+  EXPECT_THAT(fault_of(fixture("layouts.h5"), "/chunked", {.max_memory_bytes = 100}),
+              testing::HasSubstr("LIMIT_MEMORY"));
+  EXPECT_THAT(fault_of(fixture("layouts.h5"), "/chunked", {.cancelled = [] { return true; }}),
+              testing::HasSubstr("CANCELLED"));
+  const std::string cut = testing::TempDir() + "cut.h5", whole = bytes_of(fixture("layouts.h5"));
+  std::ofstream(cut, std::ios::binary) << whole.substr(0, whole.size() / 2);
+  EXPECT_THAT(fault_of(cut, "/chunked"), testing::HasSubstr("damaged or cut short"));
+  std::ofstream(cut, std::ios::binary) << "x,y\n1,2\n";
+  EXPECT_THAT(fault_of(cut, "/chunked"), testing::HasSubstr("no HDF5 file"));
+}
+
+}  // namespace
+}  // namespace meso
