@@ -40,13 +40,19 @@ BodySurface::BodySurface(const std::vector<TopoDS_Shape>& body, const CellGrid& 
   touched_.resize(grid_.count());
   places_.assign(grid_.count(), BoxPlace::outside);
   blocked_.assign(grid_.count(), 0);
-  std::uint32_t number = 0;
   for (TopExp_Explorer it(body_, TopAbs_FACE); it.More(); it.Next())
-    enter(number++, read(TopoDS::Face(it.Current()), deflection));
+    all_.push_back(read(TopoDS::Face(it.Current()), deflection));
+  for (std::uint32_t number = 0; number < all_.size(); ++number) {
+    enter(number, all_[number]);
+    std::vector<Triangle3> triangles;
+    for (std::size_t t = 0; t < all_[number].triangles.size(); ++t) triangles.push_back(all_[number].triangle(t));
+    probe_.add_group(std::move(triangles));
+  }
   fill_blocks();
 }
 
-bool BodySurface::contains(Vec3 p) const {
+/// By OpenCASCADE: a box's centre may be closer to the surface than triangles tell.
+bool BodySurface::encloses(Vec3 p) const {
   for (TopExp_Explorer it(body_, TopAbs_SOLID); it.More(); it.Next())
     if (BRepClass3d_SolidClassifier(it.Current(), to_pnt(p), Precision::Confusion()).State() == TopAbs_IN) return true;
   return false;
@@ -57,12 +63,19 @@ BodySurface::Face BodySurface::read(const TopoDS_Face& face, double deflection) 
   const Handle(Poly_Triangulation) mesh = BRep_Tool::Triangulation(face, location);
   if (mesh.IsNull()) throw Standard_Failure("a face of the body could not be meshed");
   const gp_Trsf& move = location.Transformation();
-  const auto node = [&](int i) { return to_vec(mesh->Node(i).Transformed(move)); };
+  const bool reversed = face.Orientation() == TopAbs_REVERSED;
   Face out;
+  for (int i = 1; i <= mesh->NbNodes(); ++i) {
+    out.nodes.push_back(to_vec(mesh->Node(i).Transformed(move)));
+    const gp_Pnt2d at = mesh->UVNode(i);
+    out.parameters.push_back({at.X(), at.Y()});
+  }
   for (int i = 1; i <= mesh->NbTriangles(); ++i) {
     int a = 0, b = 0, c = 0;
     mesh->Triangle(i).Get(a, b, c);
-    out.triangles.push_back({node(a), node(b), node(c)});
+    if (reversed) std::swap(b, c);
+    out.triangles.push_back(
+        {static_cast<std::uint32_t>(a - 1), static_cast<std::uint32_t>(b - 1), static_cast<std::uint32_t>(c - 1)});
   }
   const BRepAdaptor_Surface surface(face);
   out.planar = surface.GetType() == GeomAbs_Plane;
@@ -78,7 +91,9 @@ BodySurface::Face BodySurface::read(const TopoDS_Face& face, double deflection) 
     const Handle(Poly_PolygonOnTriangulation) polygon = BRep_Tool::PolygonOnTriangulation(edge, mesh, location);
     if (polygon.IsNull()) throw Standard_Failure("an edge of the body could not be meshed");
     Edge& value = out.edges.emplace_back();
-    for (int i = 1; i <= polygon->NbNodes(); ++i) value.points.push_back(node(polygon->Node(i)));
+    for (int i = 1; i <= polygon->NbNodes(); ++i)
+      value.nodes.push_back(static_cast<std::uint32_t>(polygon->Node(i) - 1));
+    value.seam = BRep_Tool::IsClosed(edge, face);
     const bool line = BRepAdaptor_Curve(edge).GetType() == GeomAbs_Line;
     value.reach = line ? 0 : 3 * deflection;
     straight = straight && line;
@@ -90,7 +105,8 @@ BodySurface::Face BodySurface::read(const TopoDS_Face& face, double deflection) 
 void BodySurface::enter(std::uint32_t number, const Face& face) {
   const Vec3 half = 0.5 * grid_.size();
   const double eps = grid_.tolerance, by = face.reach + eps;
-  for (const Triangle3& triangle : face.triangles)
+  for (std::size_t t = 0; t < face.triangles.size(); ++t) {
+    const Triangle3 triangle = face.triangle(t);
     grid_.visit_near(box_of(triangle), by, [&](const Index3& cell) {
       std::vector<std::uint32_t>& touched = touched_[grid_.slot(cell)];
       BoxPlace& place = places_[grid_.slot(cell)];
@@ -107,6 +123,7 @@ void BodySurface::enter(std::uint32_t number, const Face& face) {
       else
         block_walls(face, cell);
     });
+  }
 }
 
 /// An edge of the face in a wall, and not along the wall's border: the wall is divided there, and the cell's solid with
@@ -115,8 +132,9 @@ bool BodySurface::divides_a_wall(const Face& face, const Index3& cell) const {
   const Vec3 centre = grid_.centre(cell), half = 0.5 * grid_.size();
   const double eps = grid_.tolerance;
   for (const Edge& edge : face.edges)
-    for (std::size_t i = 0; i + 1 < edge.points.size(); ++i) {
-      const auto part = clipped(edge.points[i], edge.points[i + 1], centre, grown(half, edge.reach + eps));
+    for (std::size_t i = 0; i + 1 < edge.nodes.size(); ++i) {
+      const auto part =
+          clipped(face.nodes[edge.nodes[i]], face.nodes[edge.nodes[i + 1]], centre, grown(half, edge.reach + eps));
       if (!part) continue;
       if (edge.reach > 0) return true;
       const int border = norm(part->second - part->first) > 4 * eps ? 2 : 3;
@@ -142,7 +160,7 @@ void BodySurface::fill_blocks() {
   std::vector<Index3> open;
   grid_.visit_near({grid_.origin(grid_.min), grid_.origin(grid_.max) + grid_.size()}, 0, [&](const Index3& start) {
     if (seen[grid_.slot(start)] || place(start) == BoxPlace::crossing) return;
-    const BoxPlace block = contains(grid_.centre(start)) ? BoxPlace::inside : BoxPlace::outside;
+    const BoxPlace block = encloses(grid_.centre(start)) ? BoxPlace::inside : BoxPlace::outside;
     seen[grid_.slot(start)] = true;
     open.assign(1, start);
     while (!open.empty()) {

@@ -13,6 +13,7 @@
 
 #include "lattice/box_overlap.hpp"
 #include "lattice/cell_grid.hpp"
+#include "lattice/mesh_probe.hpp"
 #include "occt.hpp"
 
 namespace meso::brep {
@@ -30,29 +31,42 @@ class BodySurface {
   /// A copy of the body: faces are numbered in its order.
   [[nodiscard]] const TopoDS_Compound& body() const { return body_; }
 
- private:
+  /// Of a point that keeps the reach of the faces from their triangles.
+  [[nodiscard]] bool contains(Vec3 p) const { return probe_.contains(p); }
+
   struct Edge {
-    std::vector<Vec3> points;
+    std::vector<std::uint32_t> nodes;
     double reach = 0;  ///< how far the curve is from them
+    bool seam = false;
   };
   struct Face {
-    std::vector<Triangle3> triangles;
+    std::vector<Vec3> nodes;
+    std::vector<std::array<double, 2>> parameters;        ///< of the nodes, on the surface
+    std::vector<std::array<std::uint32_t, 3>> triangles;  ///< counter-clockwise seen from outside
     std::vector<Edge> edges;
     double reach = 0;  ///< how far the surface is from the triangles
     bool planar = false;
     Vec3 normal;
     double offset = 0;
-  };
 
+    [[nodiscard]] Triangle3 triangle(std::size_t i) const {
+      return {nodes[triangles[i][0]], nodes[triangles[i][1]], nodes[triangles[i][2]]};
+    }
+  };
+  [[nodiscard]] const Face& face(std::uint32_t number) const { return all_[number]; }
+  [[nodiscard]] std::size_t face_count() const { return all_.size(); }
+
+ private:
   [[nodiscard]] static Face read(const TopoDS_Face& face, double deflection);
   void enter(std::uint32_t number, const Face& face);
   [[nodiscard]] bool divides_a_wall(const Face& face, const Index3& cell) const;
   void block_walls(const Face& face, const Index3& cell);
   void fill_blocks();
-  [[nodiscard]] bool contains(Vec3 p) const;
-
+  [[nodiscard]] bool encloses(Vec3 p) const;
   CellGrid grid_;
   TopoDS_Compound body_;
+  std::vector<Face> all_;
+  MeshProbe probe_;
   std::vector<std::vector<std::uint32_t>> touched_;
   std::vector<BoxPlace> places_;
   std::vector<std::uint8_t> blocked_;  ///< bit i: a face covers the high wall across axis i

@@ -1,0 +1,220 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lattice/local_faces.hpp"
+
+#include <ElSLib.hxx>
+#include <numbers>
+
+namespace meso::brep {
+namespace {
+
+constexpr double pi = std::numbers::pi;
+constexpr double margin = 0.1;    ///< of the cell, by which a patch exceeds it
+constexpr double steepest = 1.3;  ///< latitude of a patch on a sphere
+
+/// A surface with parameters that are regular where the cell is.
+struct LocalSurface {
+  Handle(Geom_Surface) surface;
+  bool turned = false;  ///< its parameters are not those of the face
+  double around = 0;    ///< of a torus: the second parameter is told within pi of this one
+};
+
+gp_Ax3 facing(const gp_Ax3& position, Vec3 at) {
+  const gp_Vec to(position.Location(), to_pnt(at));
+  const gp_Vec axis(position.Direction()), radial = to - to.Dot(axis) * axis;
+  if (radial.Magnitude() < 1e-6) return position;
+  // The parameter is pi where the cell is.
+  gp_Ax3 out(position.Location(), position.Direction(), gp_Dir(-radial));
+  if (!position.Direct()) out.YReverse();
+  return out;
+}
+
+LocalSurface local_surface(const TopoDS_Face& face, Vec3 at) {
+  const BRepAdaptor_Surface surface(face, false);
+  switch (surface.GetType()) {
+    case GeomAbs_Cylinder: {
+      gp_Cylinder cylinder = surface.Cylinder();
+      cylinder.SetPosition(facing(cylinder.Position(), at));
+      return {new Geom_CylindricalSurface(cylinder), true};
+    }
+    case GeomAbs_Cone: {
+      gp_Cone cone = surface.Cone();
+      cone.SetPosition(facing(cone.Position(), at));
+      return {new Geom_ConicalSurface(cone), true};
+    }
+    case GeomAbs_Torus: {
+      gp_Torus torus = surface.Torus();
+      torus.SetPosition(facing(torus.Position(), at));
+      double u = 0, v = 0;
+      ElSLib::Parameters(torus, to_pnt(at), u, v);
+      return {new Geom_ToroidalSurface(torus), true, v};
+    }
+    case GeomAbs_Sphere: {
+      gp_Sphere sphere = surface.Sphere();
+      const gp_Vec to(sphere.Location(), to_pnt(at));
+      if (to.Magnitude() < 1e-6) return {};
+      const gp_Dir back(-to);
+      gp_Ax3 position(sphere.Location(), gp_Ax2(sphere.Location(), back).XDirection(), back);
+      if (!sphere.Position().Direct()) position.YReverse();
+      sphere.SetPosition(position);
+      return {new Geom_SphericalSurface(sphere), true};
+    }
+    case GeomAbs_Plane:
+      return {new Geom_Plane(surface.Plane())};
+    default:
+      return {BRep_Tool::Surface(face)};
+  }
+}
+
+std::array<double, 2> parameters_on(const LocalSurface& local, Vec3 p) {
+  const Handle(Geom_Surface)& surface = local.surface;
+  std::array<double, 2> at{};
+  const gp_Pnt point = to_pnt(p);
+  if (const auto cylinder = Handle(Geom_CylindricalSurface)::DownCast(surface))
+    ElSLib::Parameters(cylinder->Cylinder(), point, at[0], at[1]);
+  else if (const auto cone = Handle(Geom_ConicalSurface)::DownCast(surface))
+    ElSLib::Parameters(cone->Cone(), point, at[0], at[1]);
+  else if (const auto torus = Handle(Geom_ToroidalSurface)::DownCast(surface)) {
+    ElSLib::Parameters(torus->Torus(), point, at[0], at[1]);
+    at[1] = local.around + std::remainder(at[1] - local.around, 2 * pi);
+  } else if (const auto sphere = Handle(Geom_SphericalSurface)::DownCast(surface))
+    ElSLib::Parameters(sphere->Sphere(), point, at[0], at[1]);
+  return at;
+}
+
+/// A rectangle of parameters.
+struct Range {
+  std::array<double, 2> low{HUGE_VAL, HUGE_VAL}, high{-HUGE_VAL, -HUGE_VAL};
+  void extend(const std::array<double, 2>& at) {
+    for (std::size_t i = 0; i < 2; ++i) {
+      low[i] = std::fmin(low[i], at[i]);
+      high[i] = std::fmax(high[i], at[i]);
+    }
+  }
+  void grow(double share) {
+    for (std::size_t i = 0; i < 2; ++i) {
+      const double by = share * (high[i] - low[i]);
+      low[i] -= by;
+      high[i] += by;
+    }
+  }
+  /// Of a segment, or one from seam to seam.
+  [[nodiscard]] bool meets(const std::array<double, 2>& p, const std::array<double, 2>& q) const {
+    double enter = 0, leave = 1;
+    for (std::size_t i = 0; i < 2; ++i) {
+      const double d = q[i] - p[i];
+      if (d == 0) {
+        if (p[i] < low[i] || p[i] > high[i]) return false;
+        continue;
+      }
+      const double a = (low[i] - p[i]) / d, b = (high[i] - p[i]) / d;
+      enter = std::fmax(enter, std::fmin(a, b));
+      leave = std::fmin(leave, std::fmax(a, b));
+    }
+    return enter <= leave;
+  }
+};
+
+/// The part of a B-spline surface over the range; other surfaces are as good as their trimming.
+Handle(Geom_Surface) cut_out(const Handle(Geom_Surface) & surface, const Range& range) {
+  const auto spline = Handle(Geom_BSplineSurface)::DownCast(surface);
+  if (spline.IsNull()) return surface;
+  const Handle(Geom_BSplineSurface) part = Handle(Geom_BSplineSurface)::DownCast(spline->Copy());
+  part->Segment(range.low[0], range.high[0], range.low[1], range.high[1]);
+  return Handle(Geom_Surface)(part);
+}
+
+}  // namespace
+
+LocalFaces::LocalFaces(const BodySurface& surface, const CellGrid& grid) : surface_(surface), grid_(grid) {
+  const TopoDS_Shape body = BRepBuilderAPI_Copy(surface.body()).Shape();
+  std::uint32_t solid = 0;
+  for (TopExp_Explorer one(body, TopAbs_SOLID); one.More(); one.Next(), ++solid)
+    for (TopExp_Explorer it(one.Current(), TopAbs_FACE); it.More(); it.Next()) {
+      faces_.push_back(TopoDS::Face(it.Current()));
+      solid_of_.push_back(solid);
+    }
+}
+
+std::vector<TopoDS_Shape> LocalFaces::near(const Index3& cell, const std::vector<std::uint32_t>& faces,
+                                           bool patches) const {
+  std::vector<TopoDS_Shape> solids;
+  const BRep_Builder builder;
+  std::uint32_t last = 0;
+  for (const std::uint32_t number : faces) {
+    if (solids.empty() || solid_of_[number] != last) {
+      TopoDS_Compound compound;
+      builder.MakeCompound(compound);
+      solids.push_back(compound);
+      last = solid_of_[number];
+    }
+    const TopoDS_Face local = patches ? patch(number, cell) : TopoDS_Face();
+    builder.Add(solids.back(), local.IsNull() ? faces_[number] : local);
+  }
+  return solids;
+}
+
+/// Null where an edge of the face is near, or where the parameters are not regular over the cell.
+TopoDS_Face LocalFaces::patch(std::uint32_t number, const Index3& cell) const {
+  const BodySurface::Face& mesh = surface_.face(number);
+  const TopoDS_Face& face = faces_[number];
+  const Vec3 centre = grid_.centre(cell), half = 0.5 * grid_.size();
+  const LocalSurface local = local_surface(face, centre);
+  if (local.surface.IsNull()) return {};
+  const double by = mesh.reach + margin * norm(half);
+  const Vec3 grown{half.x + by, half.y + by, half.z + by};
+  const auto parameters = [&](std::uint32_t node) {
+    return local.turned ? parameters_on(local, mesh.nodes[node]) : mesh.parameters[node];
+  };
+  const bool is_torus = !Handle(Geom_ToroidalSurface)::DownCast(local.surface).IsNull();
+  const auto wraps = [&](const std::array<double, 2>& p, const std::array<double, 2>& q) {
+    return local.turned && (std::fabs(p[0] - q[0]) > pi || (is_torus && std::fabs(p[1] - q[1]) > pi));
+  };
+  Range range;
+  for (std::size_t t = 0; !mesh.planar && t < mesh.triangles.size(); ++t) {
+    const Triangle3 triangle = mesh.triangle(t);
+    if (!overlaps(triangle, centre, grown)) continue;
+    std::array<std::array<double, 2>, 3> at;
+    for (std::size_t k = 0; k < 3; ++k) at[k] = parameters(mesh.triangles[t][k]);
+    for (std::size_t k = 0; k < 3; ++k)
+      if (wraps(at[k], at[(k + 1) % 3])) return {};
+    for (const auto& p : at) range.extend(p);
+  }
+  if (mesh.planar) {
+    range = {};
+    const BRepAdaptor_Surface plane(face);
+    for (int corner = 0; corner < 8; ++corner) {
+      const Vec3 p = centre + Vec3{corner & 1 ? grown.x : -grown.x, corner & 2 ? grown.y : -grown.y,
+                                   corner & 4 ? grown.z : -grown.z};
+      std::array<double, 2> at{};
+      ElSLib::Parameters(plane.Plane(), to_pnt(p), at[0], at[1]);
+      range.extend(at);
+    }
+  } else {
+    range.grow(0.05);
+    if (!local.turned) {
+      Range whole;
+      local.surface->Bounds(whole.low[0], whole.high[0], whole.low[1], whole.high[1]);
+      for (std::size_t i = 0; i < 2; ++i) {
+        range.low[i] = std::fmax(range.low[i], whole.low[i]);
+        range.high[i] = std::fmin(range.high[i], whole.high[i]);
+      }
+    }
+  }
+  if (!(range.low[0] < range.high[0] && range.low[1] < range.high[1])) return {};
+  if (!Handle(Geom_SphericalSurface)::DownCast(local.surface).IsNull() &&
+      std::fmax(std::fabs(range.low[1]), std::fabs(range.high[1])) > steepest)
+    return {};
+  for (const BodySurface::Edge& edge : mesh.edges) {
+    if (edge.seam && local.turned) continue;
+    for (std::size_t i = 0; i + 1 < edge.nodes.size(); ++i) {
+      const auto p = parameters(edge.nodes[i]), q = parameters(edge.nodes[i + 1]);
+      if (!wraps(p, q) && range.meets(p, q)) return {};
+    }
+  }
+  const Handle(Geom_Surface) part = cut_out(local.surface, range);
+  BRepBuilderAPI_MakeFace made(part, range.low[0], range.high[0], range.low[1], range.high[1], Precision::Confusion());
+  if (!made.IsDone()) return {};
+  return TopoDS::Face(made.Face().Oriented(face.Orientation()));
+}
+
+}  // namespace meso::brep
