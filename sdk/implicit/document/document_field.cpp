@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "meso/implicit/document_field.hpp"
+
+#include <algorithm>
+
+#include "boundary_rule.hpp"
+#include "meso/base/unit.hpp"
+#include "meso/eval/bounds.hpp"
+#include "pattern_field.hpp"
+#include "shape_field.hpp"
+
+namespace meso::implicit {
+namespace {
+
+class PartMaker {
+ public:
+  PartMaker(const eval::Evaluation& evaluation, const DocumentFieldOptions& options, DiagnosticSink& sink)
+      : evaluation_(evaluation),
+        options_(options),
+        report_(evaluation, sink),
+        shapes_(report_, options, [this](const Part& part) { return make(part); }) {}
+
+  std::optional<Field> make(const Part& part) {
+    std::optional<Field> body;
+    if (part.macrostructure) {
+      body = macrostructure(part.macrostructure->text);
+      if (!body) return std::nullopt;
+    }
+    for (const Apply& apply : part.steps) {
+      body = apply.pattern ? with_cells(body.value_or(nothing()), apply) : with_part(body.value_or(nothing()), apply);
+      if (!body) return std::nullopt;
+    }
+    return body;
+  }
+  PartField finished(const Field& field) {
+    result_.field = field;
+    result_.smallest_feature_mm = std::min(result_.smallest_feature_mm, shapes_.smallest_feature_mm());
+    return result_;
+  }
+
+ private:
+  std::optional<Field> macrostructure(const std::string& id) {
+    const auto& all = evaluation_.document().macrostructures;
+    const auto found = std::ranges::find(all, id, [](const Macrostructure& m) { return m.id.text; });
+    const auto shape = evaluation_.shape(*found, report_.sink());
+    return shape ? shapes_.make(*shape) : std::nullopt;
+  }
+
+  static Field combined(const Field& body, const Field& operand, ApplyOperation operation) {
+    switch (operation) {
+      case ApplyOperation::union_:
+        return joined(body, operand);
+      case ApplyOperation::intersection:
+        return intersection_of(body, operand);
+      case ApplyOperation::difference:
+        break;
+    }
+    return difference_of(body, operand.offset(seam));
+  }
+
+  std::optional<Field> with_part(const Field& body, const Apply& apply) {
+    const auto placement = evaluation_.placement(apply.placement, report_.sink());
+    const auto operand = placement ? make(*evaluation_.find_part(apply.part->text)) : std::nullopt;
+    return operand ? std::optional(combined(body, moved(*operand, *placement), apply.operation)) : std::nullopt;
+  }
+
+  std::optional<Field> with_cells(const Field& body, const Apply& apply) {
+    const auto cells = evaluation_.cells(*evaluation_.find_pattern(apply.pattern->text), report_.sink());
+    if (!cells) return std::nullopt;
+    const BoundaryRule rule = apply.boundary.value_or(BoundaryRule::clip);
+    KeepCell keep;
+    if (rule != BoundaryRule::clip) {
+      const auto clearance = clearance_of(apply);
+      if (!clearance) return std::nullopt;
+      const BoundaryQuestion question{rule == BoundaryRule::drop_partial, *clearance};
+      const bool by_body = apply.test.value_or(InsideTest::box) == InsideTest::body;
+      keep = [this, &cells, &body, question, by_body](const eval::PlacedCell& cell) {
+        return keeps(*cells, cell, body, question, by_body);
+      };
+    }
+    const auto pattern = field_of_pattern(evaluation_, *cells, keep, shapes_, options_.run, report_);
+    if (!pattern) return std::nullopt;
+    result_.cells_placed += pattern->placed;
+    result_.cells_kept += pattern->kept;
+    result_.smallest_feature_mm = std::min(result_.smallest_feature_mm, pattern->smallest_feature_mm);
+    // Whole cells stand for themselves.
+    if (rule != BoundaryRule::clip && apply.operation == ApplyOperation::intersection) return pattern->field;
+    return combined(body, pattern->field, apply.operation);
+  }
+
+  std::optional<double> clearance_of(const Apply& apply) {
+    if (!apply.clearance) return 0.0;
+    const auto value = evaluation_.value(*apply.clearance, apply.id_in_source, "clearance", report_.sink());
+    if (!value) return std::nullopt;
+    return *value * millimeters_per(evaluation_.document().unit);
+  }
+
+  std::optional<bool> keeps(const eval::CellStream& cells, const eval::PlacedCell& cell, const Field& body,
+                            const BoundaryQuestion& question, bool by_body) {
+    if (options_.run.should_stop()) {
+      report_.sink().report({.code = options_.run.out_of_time() ? Code::limit_time : Code::cancelled});
+      return std::nullopt;
+    }
+    const std::size_t errors = report_.sink().error_count();
+    std::optional<Field> own;
+    if (by_body) {
+      own = field_of_cell(evaluation_, cells, cell, shapes_, report_);
+      if (!own) return std::nullopt;
+    }
+    auto region = cells.cell_region(cell, report_.sink());
+    if (report_.sink().error_count() > errors) return std::nullopt;
+    Affine frame = cell.mapping == CellMapping::rigid ? cell.world_from_cell : Affine{};
+    if (by_body) {  // its body may leave its box
+      const Box3 box = own->bounds();
+      region = eval::Shape{eval::BoxShape{box.min, box.max - box.min}};
+      frame = {};
+    }
+    if (!region) return true;
+    return answer(question, body, *region, frame, own ? &*own : nullptr);
+  }
+
+  const eval::Evaluation& evaluation_;
+  const DocumentFieldOptions& options_;
+  Reporter report_;
+  ShapeFields shapes_;
+  PartField result_{nothing()};
+};
+
+}  // namespace
+
+std::optional<PartField> field_of_part(const eval::Evaluation& evaluation, const Part& part,
+                                       const DocumentFieldOptions& options, DiagnosticSink& sink) {
+  PartMaker maker(evaluation, options, sink);
+  const std::size_t errors = sink.error_count();
+  const auto field = maker.make(part);
+  if (!field || sink.error_count() > errors) return std::nullopt;
+  return maker.finished(*field);
+}
+
+}  // namespace meso::implicit

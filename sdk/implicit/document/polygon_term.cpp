@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "polygon_term.hpp"
+
+#include <algorithm>
+
+namespace meso::implicit {
+namespace {
+
+using expr::Op;
+
+Term apply(Op op, const Term& a, const Term& b) { return Term::apply(op, {a, b}); }
+Term sum(std::vector<Term> terms) {
+  // As a balanced tree, so that thousands of sides are no deep tree.
+  while (terms.size() > 1) {
+    std::vector<Term> next;
+    for (std::size_t i = 0; i + 1 < terms.size(); i += 2) next.push_back(terms[i] + terms[i + 1]);
+    if (terms.size() % 2 == 1) next.push_back(terms.back());
+    terms = std::move(next);
+  }
+  return terms.front();
+}
+Term least(std::vector<Term> terms) {
+  while (terms.size() > 1) {
+    std::vector<Term> next;
+    for (std::size_t i = 0; i + 1 < terms.size(); i += 2) next.push_back(min(terms[i], terms[i + 1]));
+    if (terms.size() % 2 == 1) next.push_back(terms.back());
+    terms = std::move(next);
+  }
+  return terms.front();
+}
+
+/// Negative inside the closed polygon: an odd number of sides crosses the ray to the right.
+Term polygon(const std::vector<std::pair<double, double>>& points) {
+  const Term x = Term::coordinate(0), y = Term::coordinate(1), zero = Term::constant(0), one = Term::constant(1);
+  std::vector<Term> squares, crossings;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const auto [ax, ay] = points[i];
+    const auto [bx, by] = points[(i + 1) % points.size()];
+    const double ex = bx - ax, ey = by - ay, length2 = ex * ex + ey * ey;
+    const Term wx = x - ax, wy = y - ay;
+    const Term along = Term::apply(Op::clamp, {(ex / length2) * wx + (ey / length2) * wy, zero, one});
+    const Term dx = wx - ex * along, dy = wy - ey * along;
+    squares.push_back(dx * dx + dy * dy);
+    if (ay == by) continue;
+    const auto [low, high] = std::minmax(ay, by);
+    const Term beside = apply(Op::logical_and, apply(Op::greater_equal, y, Term::constant(low)),
+                              apply(Op::less, y, Term::constant(high)));
+    const Term left = apply(Op::less, x, (ex / ey) * wy - -ax);
+    crossings.push_back(apply(Op::logical_and, beside, left));
+  }
+  const Term odd = apply(Op::mod, sum(std::move(crossings)), Term::constant(2));
+  const Term distance = sqrt(least(std::move(squares)));
+  return Term::apply(Op::select, {odd, -distance, distance});
+}
+
+/// A polygon's distance as a leaf with bounds of its own: a box around it is cut off at no cost.
+Field profile(const std::vector<std::pair<double, double>>& points) { return Field::from_term(polygon(points)); }
+
+}  // namespace
+
+Field extrusion(const eval::ExtrusionShape& shape) {
+  Box3 box;
+  for (const auto& [x, y] : shape.points) box.extend({x, y, 0});
+  const Vec3 half{(box.max.x - box.min.x) / 2, (box.max.y - box.min.y) / 2, shape.height / 2};
+  const Vec3 middle{box.min.x + half.x, box.min.y + half.y, shape.z + half.z};
+  const Field slab = intersection_of(Field::half_space({0, 0, 1}, shape.z + shape.height),
+                                     Field::half_space({0, 0, -1}, -shape.z));
+  // The box holds the body and changes nothing but bounds().
+  return intersection_of(intersection_of(profile(shape.points), slab), Field::box(half).translated(middle));
+}
+
+}  // namespace meso::implicit
