@@ -155,6 +155,7 @@ class CellStep {
       step.solids = std::move(*cut_body);
     }
     if (!drilled_.empty() && !drill_into(step)) return {};
+    if (apart_inside_.empty() && enclosed_.empty()) return step;
     std::vector<std::vector<TopoDS_Shape>> voids(step.solids.size());
     const Boundary owners(step.solids);
     for (const std::size_t i : apart_inside_) {

@@ -333,7 +333,8 @@ Solids Drill::drilled() const {
   std::vector<std::vector<TopoDS_Shape>> wires(faces_.size()), walls(parents.size());
   for (const Hole& hole : holes_) {
     const Vec3 sweep = hole.bore.length * hole.bore.axis;
-    BRepPrimAPI_MakePrism prism(hole.bore.end, gp_Vec(sweep.x, sweep.y, sweep.z));
+    // A copy: else all holes of one prototype gather their curves on the same few edges.
+    BRepPrimAPI_MakePrism prism(hole.bore.end, gp_Vec(sweep.x, sweep.y, sweep.z), true);
     const std::array<TopoDS_Shape, 2> ends{prism.FirstShape(), prism.LastShape()};
     const std::uint32_t shell = faces_[hole.faces[0] ? *hole.faces[0] : *hole.faces[1]].shell;
     for (TopExp_Explorer it(prism.Shape(), TopAbs_FACE); it.More(); it.Next()) {
