@@ -5,15 +5,28 @@
 
 namespace meso::step {
 
+void StepText::await() {
+  if (writing_.valid()) ok_ = writing_.get() && ok_;
+}
+
+void StepText::hand_over() {
+  await();
+  if (written_.empty()) written_.resize(buffer_size);
+  std::swap(buffer_, written_);
+  const std::size_t size = std::exchange(used_, 0);
+  flushed_ += size;
+  if (ok_) writing_ = std::async(std::launch::async, [this, size] { return sink_.write({written_.data(), size}); });
+}
+
 void StepText::flush() {
+  await();
   ok_ = ok_ && sink_.write({buffer_.data(), used_});
-  flushed_ += used_;
-  used_ = 0;
+  flushed_ += std::exchange(used_, 0);
 }
 
 void StepText::put_slowly(std::string_view text) {
   while (!text.empty()) {
-    if (used_ == buffer_size) flush();
+    if (used_ == buffer_size) hand_over();
     const std::size_t part = std::min(text.size(), buffer_size - used_);
     std::memcpy(buffer_.data() + used_, text.data(), part);
     used_ += part;
@@ -23,7 +36,7 @@ void StepText::put_slowly(std::string_view text) {
 
 // The shortest digits that read back as the same double, in STEP's spelling: always a point, exponent E.
 void StepText::real(double value) {
-  if (buffer_size - used_ < longest_number) flush();
+  if (buffer_size - used_ < longest_number) hand_over();
   char* const begin = buffer_.data() + used_;
   char* end = std::to_chars(begin, begin + longest_number, value + 0.0).ptr;  // + 0.0: no "-0."
   char* const exponent = std::find(begin, end, 'e');

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// The syntax of a STEP file: numbered entities with typed arguments, buffered into a sink.
+// The syntax of a STEP file: numbered entities with typed arguments, buffered into a sink. While one buffer fills, the
+// one before it is written by a thread of its own, so a slow disk costs no time until it is slower than the text.
 //
 //   const StepId p = text.entity("CARTESIAN_POINT", NoName{}, Vec3{1, 2, 3});   // #1=CARTESIAN_POINT('',(1.,2.,3.));
 //   text.entity("VERTEX_POINT", NoName{}, Ref{p});
@@ -9,6 +10,7 @@
 #include <charconv>
 #include <cstdint>
 #include <cstring>
+#include <future>
 #include <span>
 #include <string>
 #include <string_view>
@@ -73,6 +75,7 @@ class StepText {
   /// Anything outside the data section.
   void raw(std::string_view text) { put(text); }
 
+  /// Everything is in the sink when this returns.
   void flush();
   [[nodiscard]] std::uint64_t bytes() const { return flushed_ + used_; }
   [[nodiscard]] std::uint64_t entities() const { return last_; }
@@ -82,6 +85,8 @@ class StepText {
   static constexpr std::size_t buffer_size = std::size_t{1} << 20;
   static constexpr std::size_t longest_number = 32;
 
+  void hand_over();
+  void await();
   void begin_entity() {
     put("#");
     integer(++last_);
@@ -98,7 +103,7 @@ class StepText {
   }
   void put_slowly(std::string_view text);
   void integer(std::uint64_t value) {
-    if (buffer_size - used_ < longest_number) flush();
+    if (buffer_size - used_ < longest_number) hand_over();
     char* const begin = buffer_.data() + used_;
     used_ += static_cast<std::size_t>(std::to_chars(begin, begin + longest_number, value).ptr - begin);
   }
@@ -142,11 +147,12 @@ class StepText {
   }
 
   ByteSink& sink_;
-  std::vector<char> buffer_;
+  std::vector<char> buffer_, written_;  ///< the second belongs to the thread while it runs
   std::size_t used_ = 0;
   std::uint64_t flushed_ = 0;
   StepId last_ = 0;
   bool ok_ = true;
+  std::future<bool> writing_;
 };
 
 }  // namespace meso::step

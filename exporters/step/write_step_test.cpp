@@ -37,6 +37,19 @@ TEST(StepText, StringsAreEncoded) {
             "#1=S('it''s a\\\\b \\X4\\000000E9\\X0\\');\n");
 }
 
+TEST(StepText, AFullDiskIsNotForgotten) {
+  struct FullDisk final : ByteSink {
+    bool write(std::string_view) override { return ++writes != 2; }
+    int writes = 0;
+  } disk;
+  StepText text(disk);
+  const std::string name(1000, 'x');
+  for (int i = 0; i < 5000; ++i) text.entity("E", Quoted{name});
+  text.flush();
+  EXPECT_FALSE(text.ok());
+  EXPECT_EQ(disk.writes, 2);
+}
+
 TEST(StepText, SurvivesTheEdgeOfItsBuffer) {
   std::string expected, name(999, 'x');
   const std::string text = data_of([&](StepText& t) {
