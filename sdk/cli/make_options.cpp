@@ -11,9 +11,8 @@ std::optional<operations::MakeOptions> make_options(Run& run) {
   if (!run.flags.deflection.empty())
     options.deflection_mm = run.length_mm(run.flags.deflection, LengthUnit::millimeter, "--deflection");
   if (!run.flags.angle.empty()) options.angle_rad = run.angle_rad(run.flags.angle, "--angle");
-  if (run.flags.engine == "implicit") {
-    run.sink.report({.code = Code::engine_not_built, .args = {"implicit"}});
-  }
+  if (run.flags.engine == "implicit") options.engine = operations::Engine::implicit;
+  if (run.flags.engine == "brep") options.engine = operations::Engine::brep;
   return run.sink.has_errors() ? std::nullopt : std::optional(std::move(options));
 }
 

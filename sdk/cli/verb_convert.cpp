@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 
 #include "make_options.hpp"
+#include "meso/expr/expression.hpp"
 #include "meso/operations/convert.hpp"
 #include "run.hpp"
 #include "stop.hpp"
@@ -11,7 +12,18 @@
 namespace meso::cli {
 namespace {
 
+void print_grid(const operations::ConvertReport& r, const std::string& out) {
+  fmt::print(stderr, "{}: {} bytes, {} triangles; {} x {} x {} samples, {:g} mm apart\n", out, r.bytes, r.triangles,
+             r.grid_nodes[0], r.grid_nodes[1], r.grid_nodes[2], r.spacing_mm);
+  if (r.cells.placed > 0) fmt::print(stderr, "cells: {} placed, {} kept\n", r.cells.placed, r.cells.kept);
+  if (r.mesh)
+    fmt::print(stderr, "volume {:.6f} mm3, area {:.6f} mm2, {} in {} piece{}; ", r.mesh->volume, r.mesh->area,
+               r.mesh->closed ? "closed" : "NOT CLOSED", r.mesh->components, r.mesh->components == 1 ? "" : "s");
+  fmt::print(stderr, "engine {} ({}), {:.2f} s\n", r.engine, r.way, r.seconds.total);
+}
+
 void print_summary(const operations::ConvertReport& r, const std::string& out) {
+  if (r.spacing_mm > 0) return print_grid(r, out);
   fmt::print(stderr, "{}: {} bytes, {} solid{}, {} faces", out, r.bytes, r.measures.solids,
              r.measures.solids == 1 ? "" : "s", r.measures.faces);
   if (r.triangles > 0)
@@ -34,6 +46,21 @@ Json report_json(const operations::ConvertReport& r, const std::string& in, cons
   j["output"] = out;
   j["engine"] = r.engine;
   j["way"] = r.way;
+  if (r.spacing_mm > 0) {
+    j["grid"] = {{"nodes", r.grid_nodes}, {"spacing", r.spacing_mm}};
+    j["cells"] = {{"placed", r.cells.placed}, {"kept", r.cells.kept}};
+    j["triangles"] = r.triangles;
+    if (r.mesh) {
+      j["volume"] = r.mesh->volume;
+      j["area"] = r.mesh->area;
+      j["closed"] = r.mesh->closed;
+      j["components"] = r.mesh->components;
+    }
+    j["bytes"] = r.bytes;
+    j["seconds"] = seconds_json(r.seconds);
+    j["peakBytes"] = peak_memory_bytes();
+    return j;
+  }
   j["cells"] = {{"placed", r.cells.placed}, {"kept", r.cells.kept}, {"crossing", r.cells.crossing}};
   j["solids"] = r.measures.solids;
   j["faces"] = r.measures.faces;
@@ -48,16 +75,47 @@ Json report_json(const operations::ConvertReport& r, const std::string& in, cons
   return j;
 }
 
-int convert_verb(Run& run, const std::string& in, const std::string& out, bool ascii) {
-  if (operations::output_needs_mesh(out) == false) {
-    run.refuse_without_effect({{"--deflection", !run.flags.deflection.empty()}, {"--angle", !run.flags.angle.empty()}},
-                              "for .stl");
+/// "100^3" or "50,60,200": constant expressions. Nothing if it is neither; reported.
+std::optional<std::vector<double>> sample_counts(Run& run, const std::string& text) {
+  std::vector<double> result;
+  for (const expr::ListItem& item : expr::split_list(text)) {
+    const auto parsed = expr::parse_expression(item.text, LengthUnit::millimeter);
+    const auto value = parsed.expression && parsed.expression->is_constant() ? expr::evaluate(*parsed.expression, {})
+                                                                             : expr::EvalResult{.failed_length = 1};
+    if (!value || !(value.value >= 2))
+      return run.usage_error("--samples takes one number or three, from 2: '" + text + "'"), std::nullopt;
+    result.push_back(value.value);
   }
-  const auto options = make_options(run);
-  if (!options) return run.finish();
+  if (result.size() == 1 || result.size() == 3) return result;
+  run.usage_error("--samples takes one number or three: '" + text + "'");
+  return std::nullopt;
+}
+
+/// Of this verb alone.
+struct ConvertFlags {
+  bool ascii = false, measure = false;
+  std::string spacing, samples;
+};
+
+int convert_verb(Run& run, const std::string& in, const std::string& out, const ConvertFlags& flags) {
+  if (operations::output_needs_mesh(out) == false) {
+    run.refuse_without_effect({{"--deflection", !run.flags.deflection.empty()},
+                               {"--angle", !run.flags.angle.empty()},
+                               {"--measure", flags.measure}},
+                              "for meshes");
+  }
+  auto options = make_options(run);
+  if (options && !flags.spacing.empty())
+    options->spacing_mm = run.length_mm(flags.spacing, LengthUnit::millimeter, "--spacing");
+  if (options && !flags.samples.empty()) {
+    if (!flags.spacing.empty()) run.usage_error("--spacing and --samples say the same twice");
+    options->samples = sample_counts(run, flags.samples).value_or(std::vector<double>{});
+  }
+  if (!options || run.sink.has_errors()) return run.finish();
+  options->measure = flags.measure;
   clean_on_stop(out);
   const auto report = operations::convert(
-      in, out, *options, {.ascii = ascii, .no_clobber = run.flags.no_clobber, .run = options->run}, run.sink);
+      in, out, *options, {.ascii = flags.ascii, .no_clobber = run.flags.no_clobber, .run = options->run}, run.sink);
   if (!report) return run.finish(Json{{"input", in}, {"output", out}});
   const int code = run.finish(report_json(*report, in, out));
   if (!run.flags.json) print_summary(*report, out);
@@ -67,12 +125,16 @@ int convert_verb(Run& run, const std::string& in, const std::string& out, bool a
 }  // namespace
 
 void add_convert(CLI::App& app, Run& run) {
-  CLI::App* verb = app.add_subcommand("convert", "Realise a document: .step .stp .brep .stl by the output's extension");
+  CLI::App* verb = app.add_subcommand(
+      "convert", "Realise a document: .step .stp .brep .stl .ply .obj .off .vtk by the output's extension");
   static std::string in, out;
-  static bool ascii = false;
+  static ConvertFlags flags;
   verb->add_option("IN", in, "Document (.meso)")->required();
   verb->add_option("OUT", out, "Output file; replaced atomically")->required();
-  verb->add_flag("--ascii", ascii, "Text instead of binary STL");
+  verb->add_flag("--ascii", flags.ascii, "Text instead of binary STL");
+  verb->add_option("--spacing", flags.spacing, "Implicit engine: distance of samples, e.g. 0.2mm");
+  verb->add_option("--samples", flags.samples, "Implicit engine: number of samples, or three: 100^3, 50,60,200");
+  verb->add_flag("--measure", flags.measure, "Implicit engine: volume, area and pieces of the mesh");
   add_set_flag(*verb, run.flags);
   add_part_flag(*verb, run.flags);
   add_engine_flag(*verb, run.flags);
@@ -80,7 +142,7 @@ void add_convert(CLI::App& app, Run& run) {
   add_limit_flags(*verb, run.flags);
   add_json_flag(*verb, run.flags);
   add_no_clobber_flag(*verb, run.flags);
-  verb->callback([&run] { run.action = [&run] { return convert_verb(run, in, out, ascii); }; });
+  verb->callback([&run] { run.action = [&run] { return convert_verb(run, in, out, flags); }; });
 }
 
 }  // namespace meso::cli

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "meso/operations/convert.hpp"
 
-#include "meso/base/output_file.hpp"
+#include "file_extension.hpp"
 #include "meso/brep/audit.hpp"
 #include "meso/brep/triangles.hpp"
+#ifdef MESO_WITH_IMPLICIT_ENGINE
+#include "make_mesh.hpp"
+#endif
 #include "meso/import_surface_mesh/weld.hpp"
 #include "prepare.hpp"
 #include "stopwatch.hpp"
@@ -27,25 +30,35 @@ std::optional<Made> make_body(const fs::path& document, const MakeOptions& optio
               .seconds = seconds};
 }
 
-std::optional<ConvertReport> convert(const fs::path& in, const fs::path& out, MakeOptions options,
-                                     const WriteOptions& write, DiagnosticSink& sink) {
+namespace {
+
+/// Nothing speaks against the flags, or it was reported.
+bool fits(const fs::path& out, const MakeOptions& options, const WriteOptions& write, DiagnosticSink& sink) {
+  const auto refuse = [&](std::string why) {
+    sink.report({.code = Code::usage, .args = {std::move(why)}});
+    return false;
+  };
   const auto needs_mesh = output_needs_mesh(out);
-  if (!needs_mesh) {
-    sink.report(
-        {.code = Code::usage,
-         .args = {"'" + out.string() + "': no format has this extension; convert writes .step .stp .brep .stl"}});
-    return std::nullopt;
-  }
-  if (!*needs_mesh && (options.deflection_mm || options.angle_rad)) {
-    sink.report({.code = Code::usage, .args = {"--deflection and --angle have an effect for .stl only"}});
-    return std::nullopt;
-  }
-  if (write.ascii && !*needs_mesh) {
-    sink.report({.code = Code::usage, .args = {"--ascii has an effect for .stl only"}});
-    return std::nullopt;
-  }
+  if (!needs_mesh)
+    return refuse("'" + out.string() +
+                  "': no format has this extension; convert writes .step .stp .brep, and .stl .ply .obj .off .vtk");
+  const bool fine = options.deflection_mm || options.angle_rad,
+             samples = options.spacing_mm || !options.samples.empty();
+  if (!*needs_mesh && fine) return refuse("--deflection and --angle have an effect for meshes only");
+  if (!*needs_mesh && samples) return refuse("--spacing and --samples have an effect for meshes only");
+  if (!*needs_mesh && options.engine == Engine::implicit)
+    return refuse("--engine implicit makes triangles; '" + out.string() + "' is to hold exact faces");
+  if (options.engine == Engine::brep && samples)
+    return refuse("--spacing and --samples have an effect for the implicit engine only; see --deflection");
+  if (options.engine == Engine::implicit && fine)
+    return refuse("--deflection and --angle have an effect for the exact engine only; see --spacing");
+  if (write.ascii && lower_extension(out) != ".stl") return refuse("--ascii has an effect for .stl only");
+  return true;
+}
+
+std::optional<ConvertReport> convert_exactly(const fs::path& in, const fs::path& out, const MakeOptions& options,
+                                             const WriteOptions& write, DiagnosticSink& sink) {
   Stopwatch watch;
-  options.mesh = *needs_mesh;
   auto made = make_body(in, options, sink);
   if (!made) return std::nullopt;
   const brep::Body& body = made->realisation.body;
@@ -65,6 +78,66 @@ std::optional<ConvertReport> convert(const fs::path& in, const fs::path& out, Ma
   report.closed = brep::audit(body).clean();
   report.seconds.total = watch.total();
   return report;
+}
+
+#ifdef MESO_WITH_IMPLICIT_ENGINE
+/// What the exact engine answers where a part is beyond it; faults of the document or of the call are none of these.
+bool is_beyond_exact_engine(const DiagnosticSink& told) {
+  for (const Diagnostic& d : told.diagnostics()) {
+    if (severity(d) != Severity::error) continue;
+    const int exit_code = info(d.code).exit_code;
+    return exit_code == 4 || exit_code == 5 || d.code == Code::limit_booleans;
+  }
+  return false;
+}
+
+void tell(std::string why, DiagnosticSink& sink) {
+  sink.report({.code = Code::engine_chosen, .args = {"implicit", std::move(why)}});
+}
+
+std::optional<ConvertReport> convert_to_mesh(const fs::path& in, const fs::path& out, const MakeOptions& options,
+                                             const WriteOptions& write, DiagnosticSink& sink) {
+  Seconds seconds;
+  const auto evaluation = open_document(in, options, seconds, sink);
+  if (!evaluation) return std::nullopt;
+  if (options.engine == Engine::automatic) {
+    std::string why = reason_for_fields(*evaluation, options.part);
+    if (why.empty() && (options.spacing_mm || !options.samples.empty())) why = "samples are asked for";
+    if (why.empty()) {
+      DiagnosticSink told;
+      auto report = convert_exactly(in, out, options, write, told);
+      if (report || !is_beyond_exact_engine(told)) {
+        for (const Diagnostic& d : told.diagnostics()) sink.report(d);
+        return report;
+      }
+      why = "the exact one answers: " + message(told.diagnostics().front());
+    }
+    tell(std::move(why), sink);
+  }
+  auto report = make_mesh(*evaluation, out, options, write, sink);
+  if (!report) return std::nullopt;
+  report->seconds.read = seconds.read;
+  report->seconds.evaluate = seconds.evaluate;
+  report->seconds.total += seconds.read + seconds.evaluate;
+  return report;
+}
+#else
+std::optional<ConvertReport> convert_to_mesh(const fs::path& in, const fs::path& out, const MakeOptions& options,
+                                             const WriteOptions& write, DiagnosticSink& sink) {
+  if (options.engine == Engine::automatic) return convert_exactly(in, out, options, write, sink);
+  sink.report({.code = Code::engine_not_built, .args = {"implicit"}});
+  return std::nullopt;
+}
+#endif
+
+}  // namespace
+
+std::optional<ConvertReport> convert(const fs::path& in, const fs::path& out, MakeOptions options,
+                                     const WriteOptions& write, DiagnosticSink& sink) {
+  if (!fits(out, options, write, sink)) return std::nullopt;
+  options.mesh = *output_needs_mesh(out);
+  return !options.mesh || options.engine == Engine::brep ? convert_exactly(in, out, options, write, sink)
+                                                         : convert_to_mesh(in, out, options, write, sink);
 }
 
 TriangleMesh triangle_mesh(const brep::Body& body) {

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cstdlib>
+#include <system_error>
 
 #include "file_extension.hpp"
+#include "meso/base/memory_mesh_sink.hpp"
 #include "meso/base/number.hpp"
 #include "meso/base/output_file.hpp"
 #include "meso/brep/triangles.hpp"
 #include "meso/brep/write_brep.hpp"
+#include "meso/export_mesh/mesh_writer.hpp"
 #include "meso/export_step/write_step.hpp"
 #include "meso/export_stl/write_stl.hpp"
 #include "meso/operations/convert.hpp"
@@ -13,14 +16,14 @@
 namespace meso::operations {
 namespace {
 
-enum class Format { step, brep, stl };
+enum class Format { step, brep, stl, mesh };
 
 std::optional<Format> format_of(const std::filesystem::path& file) {
   const std::string extension = lower_extension(file);
   if (extension == ".step" || extension == ".stp") return Format::step;
   if (extension == ".brep") return Format::brep;
   if (extension == ".stl") return Format::stl;
-  return std::nullopt;
+  return mesh_format_of(file.string()) ? std::optional(Format::mesh) : std::nullopt;
 }
 
 /// The header's date is fixed unless the build environment states one (reproducible-builds.org).
@@ -33,6 +36,8 @@ std::int64_t source_date_epoch() {
 std::optional<Written> write_format(Format format, const brep::Body& body, const std::string& name, bool ascii,
                                     ByteSink& out, DiagnosticSink& sink) {
   switch (format) {
+    case Format::mesh:
+      break;  // see write_shared_mesh()
     case Format::step:
       return Written{.bytes = write_step(body, {.name = name, .timestamp = source_date_epoch()}, out).bytes};
     case Format::stl: {
@@ -45,6 +50,14 @@ std::optional<Written> write_format(Format format, const brep::Body& body, const
     }
   }
   return std::nullopt;
+}
+
+/// Formats whose triangles share points.
+std::optional<Written> write_shared_mesh(const brep::Body& body, const std::filesystem::path& file, OutputFile& out) {
+  const TriangleMesh mesh = triangle_mesh(body);
+  const auto writer = make_mesh_writer(*mesh_format_of(file.string()), out);
+  if (!write_mesh(mesh, *writer)) return std::nullopt;
+  return Written{.triangles = mesh.triangles.size()};
 }
 
 /// Stops a writer when the user or the clock does.
@@ -67,7 +80,7 @@ bool is_document(const std::filesystem::path& file) {
 
 std::optional<bool> output_needs_mesh(const std::filesystem::path& file) {
   const auto format = format_of(file);
-  return format ? std::optional(*format == Format::stl) : std::nullopt;
+  return format ? std::optional(*format == Format::mesh || *format == Format::stl) : std::nullopt;
 }
 
 std::optional<Written> write_body(const brep::Body& body, const std::filesystem::path& file,
@@ -81,12 +94,17 @@ std::optional<Written> write_body(const brep::Body& body, const std::filesystem:
   auto out = OutputFile::create(file.string(), options.no_clobber ? ExistingFile::refuse : ExistingFile::replace, sink);
   if (!out) return std::nullopt;
   StoppableSink stoppable(*out, options.run);
-  auto written = write_format(*format, body, file.stem().string(), options.ascii, stoppable, sink);
+  auto written = *format == Format::mesh
+                     ? write_shared_mesh(body, file, *out)
+                     : write_format(*format, body, file.stem().string(), options.ascii, stoppable, sink);
   if (options.run.should_stop()) {
     sink.report({.code = options.run.out_of_time() ? Code::limit_time : Code::cancelled});
     return std::nullopt;
   }
-  return written && out->commit(sink) ? written : std::nullopt;
+  if (!written || !out->commit(sink)) return std::nullopt;
+  std::error_code error;
+  if (written->bytes == 0) written->bytes = std::filesystem::file_size(file, error);
+  return written;
 }
 
 }  // namespace meso::operations

@@ -109,7 +109,8 @@ class Search {
       return true;
     if (!std::isfinite(body_.lipschitz())) return false;
     const double value = body_.value(middle), change = body_.lipschitz() * radius;
-    return question_.inside ? value + change <= -question_.clearance + decided_within : value - change >= -decided_within;
+    return question_.inside ? value + change <= -question_.clearance + decided_within
+                            : value - change >= -decided_within;
   }
 
   const BoundaryQuestion& question_;

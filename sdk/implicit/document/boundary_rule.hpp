@@ -14,9 +14,9 @@ struct BoundaryQuestion {
   double clearance = 0;  ///< inside by at least this much
 };
 
-/// `region`: the cell's box or volume element; `frame` puts it into the world. `own`: the cell's body in the world where
-/// the rule asks for that, else null. Regions are halved until the body's boundary is too far away to matter, or down
-/// to a sixteenth.
+/// `region`: the cell's box or volume element; `frame` puts it into the world. `own`: the cell's body in the world
+/// where the rule asks for that, else null. Regions are halved until the body's boundary is too far away to matter, or
+/// down to a sixteenth.
 [[nodiscard]] bool answer(const BoundaryQuestion& question, const Field& body, const eval::Shape& region,
                           const Affine& frame, const Field* own);
 

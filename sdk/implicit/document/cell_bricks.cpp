@@ -22,8 +22,8 @@ struct Shared {
     for (std::size_t a = 0; a < 3; ++a) {
       edge = std::max(edge, grid.spacing(a) * norm(map.linear.column(a)));
       const std::int32_t most = std::min(side, grid.nodes[a]) - 1;
-      brick += most * grid.spacing(a) / 2 * Vec3{std::abs(map.linear(0, a)), std::abs(map.linear(1, a)),
-                                                  std::abs(map.linear(2, a))};
+      brick += most * grid.spacing(a) / 2 *
+               Vec3{std::abs(map.linear(0, a)), std::abs(map.linear(1, a)), std::abs(map.linear(2, a))};
       counts[a] = (grid.nodes[a] + side - 1) / side;
     }
     // Both ends of an edge that the surface crosses are exact, and everything within the band.
@@ -64,8 +64,8 @@ class Layer {
   [[nodiscard]] std::int32_t z() const { return z_; }
 
   const Brick& brick(const Shared& shared, std::int32_t x, std::int32_t y) {
-    Brick& brick = bricks_[static_cast<std::size_t>(y) * static_cast<std::size_t>(shared.counts[0]) +
-                           static_cast<std::size_t>(x)];
+    Brick& brick =
+        bricks_[static_cast<std::size_t>(y) * static_cast<std::size_t>(shared.counts[0]) + static_cast<std::size_t>(x)];
     if (brick.state == State::unknown) look_up(shared, x, y, brick);
     return brick;
   }
@@ -132,8 +132,8 @@ class Layer {
       const Vec3 d = u - v;
       return std::abs(d.x) + std::abs(d.y) + std::abs(d.z) < rounding;
     };
-    return a.radius == b.radius && ((near(a.from, b.from) && near(a.axis, b.axis)) ||
-                                    (near(a.from + a.axis, b.from) && near(a.axis, -b.axis)));
+    return a.radius == b.radius &&
+           ((near(a.from, b.from) && near(a.axis, b.axis)) || (near(a.from + a.axis, b.from) && near(a.axis, -b.axis)));
   }
 
   Vec3 middle_of(const Shared& shared, std::int32_t x, std::int32_t y) const {
@@ -184,22 +184,15 @@ class Rows final : public ExternalRows {
     const Shared& s = *shared_;
     for (std::size_t n = 0; n < points.size(); ++n) {
       const Vec3 p = s.field_from_grid * points[n];
-      if (!(within[n] <= s.margin)) {
-        out[n] = s.cells->value(p);
-        continue;
-      }
       Layer& layer = layer_at(brick_of(points[n], 2));
       const Layer::Brick& brick = layer.brick(s, brick_of(points[n], 0), brick_of(points[n], 1));
-      if (brick.state != Layer::State::mixed) {
-        out[n] = brick.state == Layer::State::inside ? -2 * s.margin : 2 * s.margin;
-        continue;
-      }
-      double least = 2 * s.margin;
+      double least = brick.state == Layer::State::inside ? -2 * s.margin : 2 * s.margin;
       const Capsule* const capsules = layer.capsules(brick);
       for (std::uint32_t c = 0; c < brick.capsules; ++c)
         least = std::min(least, axis_distance(capsules[c], p) - capsules[c].radius);
       for (const PlacedField& field : layer.fields(brick)) least = std::min(least, field.value(p));
-      out[n] = least;
+      // What the brick does not know is at least the margin away.
+      out[n] = std::abs(least) > s.margin && !(within[n] <= s.margin) ? s.cells->value(p) : least;
     }
   }
 
@@ -222,8 +215,7 @@ class Rows final : public ExternalRows {
     for (const PlacedField& field : layer.fields(brick)) {
       std::array<Vec3, side> points;
       std::array<double, side> values;
-      for (std::size_t i = 0; i < side; ++i)
-        points[i] = field.local_from_world * (line.origin + x[i] * line.direction);
+      for (std::size_t i = 0; i < side; ++i) points[i] = field.local_from_world * (line.origin + x[i] * line.direction);
       field.field->values(points, values);
       for (std::size_t i = 0; i < side; ++i) out[i] = std::min(out[i], field.factor * values[i]);
     }
@@ -246,7 +238,8 @@ class PreparedBricks final : public ExternalField::Prepared {
 
 std::unique_ptr<ExternalField::Prepared> prepare_bricks(std::shared_ptr<const PlacedCells> cells, const Grid& grid,
                                                         const Affine& field_from_grid, double band) {
-  return std::make_unique<PreparedBricks>(std::make_shared<const Shared>(std::move(cells), grid, field_from_grid, band));
+  return std::make_unique<PreparedBricks>(
+      std::make_shared<const Shared>(std::move(cells), grid, field_from_grid, band));
 }
 
 }  // namespace meso::implicit

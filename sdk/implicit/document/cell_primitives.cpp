@@ -40,9 +40,9 @@ Field hemisphere(Vec3 end, Vec3 outwards, double radius) {
 void add_field(const Field& field, std::vector<Primitive>& into) {
   Box3 box = field.bounds(seam);
   if (box.empty()) return;
-  into.push_back({.placed = {.field = std::make_shared<const FlatTerm>(field.offset(seam).term()),
-                             .lipschitz = field.lipschitz()},
-                  .box = box});
+  into.push_back(
+      {.placed = {.field = std::make_shared<const FlatTerm>(field.offset(seam).term()), .lipschitz = field.lipschitz()},
+       .box = box});
 }
 
 Primitive placed(const Primitive& primitive, const Affine& map) {
@@ -68,7 +68,8 @@ void CellPrimitives::add_beams(const eval::BeamsShape& beams, std::vector<Primit
     const double length = norm(to - from);
     smallest_ = std::min(smallest_, 2 * std::min(s.radius_from, s.radius_to));
     const auto is_ball = [&](BeamCap cap) {
-      return cap == BeamCap::sphere || (cap == BeamCap::hemisphere && s.radius_from == s.radius_to && length >= s.radius_from);
+      return cap == BeamCap::sphere ||
+             (cap == BeamCap::hemisphere && s.radius_from == s.radius_to && length >= s.radius_from);
     };
     if (s.radius_from == s.radius_to && is_ball(s.cap_from) && is_ball(s.cap_to)) {
       add_capsule(from, to, s.radius_from, into);

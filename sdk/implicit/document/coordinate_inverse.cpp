@@ -87,13 +87,12 @@ class Inverse {
   Result turned_once() {
     const Vec3 n = turns_[0].axis.direction;
     const auto across = [&](const NamedAxis& a) { return a.axis.direction - dot(a.axis.direction, n) * n; };
-    const bool both_turn =
-        lengths_[0].axis.kind == AxisKind::distance && lengths_[1].axis.kind == AxisKind::distance;
+    const bool both_turn = lengths_[0].axis.kind == AxisKind::distance && lengths_[1].axis.kind == AxisKind::distance;
     if (!both_turn && lengths_[0].axis.kind == lengths_[1].axis.kind) return {};
     // The first is the distance that leads away from the axis of the turn.
     const NamedAxis *first = lengths_.data(), *second = first + 1;
-    const bool swap = both_turn ? norm(across(*second)) > norm(across(*first))
-                                : second->axis.kind == AxisKind::distance;
+    const bool swap =
+        both_turn ? norm(across(*second)) > norm(across(*first)) : second->axis.kind == AxisKind::distance;
     if (swap) std::swap(first, second);
     if (norm(across(*first)) < tiny) return {};
     const Vec3 e1 = across(*first) / norm(across(*first)), e2 = cross(n, e1);
@@ -142,8 +141,9 @@ class Inverse {
 
 }  // namespace
 
-std::optional<std::array<Coordinate, 3>> coordinates_of(const eval::CoordinateFrame& system, const std::array<std::size_t, 3>& axes,
-                      const std::array<double, 3>& around) {
+std::optional<std::array<Coordinate, 3>> coordinates_of(const eval::CoordinateFrame& system,
+                                                        const std::array<std::size_t, 3>& axes,
+                                                        const std::array<double, 3>& around) {
   return Inverse(system, axes, around).find();
 }
 

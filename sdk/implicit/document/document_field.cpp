@@ -27,7 +27,7 @@ class PartMaker {
       if (!body) return std::nullopt;
     }
     for (const Apply& apply : part.steps) {
-      body = apply.pattern ? with_cells(body.value_or(nothing()), apply) : with_part(body.value_or(nothing()), apply);
+      body = apply.pattern ? with_cells(body, apply) : with_part(body, apply);
       if (!body) return std::nullopt;
     }
     return body;
@@ -46,25 +46,28 @@ class PartMaker {
     return shape ? shapes_.make(*shape) : std::nullopt;
   }
 
-  static Field combined(const Field& body, const Field& operand, ApplyOperation operation) {
+  using Body = std::optional<Field>;  ///< nothing yet: the first step is a union (R-5.12.2)
+
+  static Field combined(const Body& body, const Field& operand, ApplyOperation operation) {
+    if (!body) return operand;
     switch (operation) {
       case ApplyOperation::union_:
-        return joined(body, operand);
+        return joined(*body, operand);
       case ApplyOperation::intersection:
-        return intersection_of(body, operand);
+        return intersection_of(*body, operand);
       case ApplyOperation::difference:
         break;
     }
-    return difference_of(body, operand.offset(seam));
+    return difference_of(*body, operand.offset(seam));
   }
 
-  std::optional<Field> with_part(const Field& body, const Apply& apply) {
+  std::optional<Field> with_part(const Body& body, const Apply& apply) {
     const auto placement = evaluation_.placement(apply.placement, report_.sink());
     const auto operand = placement ? make(*evaluation_.find_part(apply.part->text)) : std::nullopt;
     return operand ? std::optional(combined(body, moved(*operand, *placement), apply.operation)) : std::nullopt;
   }
 
-  std::optional<Field> with_cells(const Field& body, const Apply& apply) {
+  std::optional<Field> with_cells(const Body& body, const Apply& apply) {
     const auto cells = evaluation_.cells(*evaluation_.find_pattern(apply.pattern->text), report_.sink());
     if (!cells) return std::nullopt;
     const BoundaryRule rule = apply.boundary.value_or(BoundaryRule::clip);
@@ -75,7 +78,7 @@ class PartMaker {
       const BoundaryQuestion question{rule == BoundaryRule::drop_partial, *clearance};
       const bool by_body = apply.test.value_or(InsideTest::box) == InsideTest::body;
       keep = [this, &cells, &body, question, by_body](const eval::PlacedCell& cell) {
-        return keeps(*cells, cell, body, question, by_body);
+        return keeps(*cells, cell, *body, question, by_body);
       };
     }
     const auto pattern = field_of_pattern(evaluation_, *cells, keep, shapes_, options_.run, report_);

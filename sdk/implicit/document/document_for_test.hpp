@@ -22,9 +22,11 @@ inline std::string told(const DiagnosticSink& sink) {
 
 /// A document and the field of one of its parts.
 struct TestDocument {
-  explicit TestDocument(const std::string& content, const std::string& part = "p", const ImportMeshReader& imports = {}) {
-    auto read = read_document(
-        "<meso xmlns=\"urn:meso-format:1.0\" version=\"1.0\" unit=\"millimeter\">" + content + "</meso>", "test.meso", sink);
+  explicit TestDocument(const std::string& content, const std::string& part = "p",
+                        const ImportMeshReader& imports = {}) {
+    auto read =
+        read_document("<meso xmlns=\"urn:meso-format:1.0\" version=\"1.0\" unit=\"millimeter\">" + content + "</meso>",
+                      "test.meso", sink);
     open(std::move(read), ".");
     if (evaluation) make(part, imports);
   }
@@ -57,7 +59,8 @@ inline std::string macrostructure(const std::string& csg) {
   return "<macrostructures><macrostructure id='m'><csg>" + csg + "</csg></macrostructure></macrostructures>";
 }
 inline std::string part_of(const std::string& steps, bool with_body = true) {
-  return std::string("<parts><part id='p'") + (with_body ? " macrostructure='m'" : "") + ">" + steps + "</part></parts>";
+  return std::string("<parts><part id='p'") + (with_body ? " macrostructure='m'" : "") + ">" + steps +
+         "</part></parts>";
 }
 /// The pattern "c" of the unit cell "u".
 inline std::string cells(const std::string& cell, const std::string& generator, const std::string& attributes = "") {
@@ -99,7 +102,8 @@ inline double volume_by_points(const Field& field, int along = 60) {
   for (int j = 0; j < along; ++j)
     for (int k = 0; k < along; ++k) {
       for (int i = 0; i < along; ++i)
-        points[static_cast<std::size_t>(i)] = box.min + Vec3{(i + 0.4919) * step.x, (j + 0.5113) * step.y, (k + 0.4877) * step.z};
+        points[static_cast<std::size_t>(i)] =
+            box.min + Vec3{(i + 0.4919) * step.x, (j + 0.5113) * step.y, (k + 0.4877) * step.z};
       field.values(points, values);
       for (const double v : values) inside += v < 0;
     }

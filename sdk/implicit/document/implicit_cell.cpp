@@ -66,16 +66,15 @@ std::optional<Term> ImplicitCells::term(const Expression& expression, ElementId 
 // for points: sets see document parameters and the point's place; defaults that follow see what they saw in
 // the cell.
 std::optional<std::vector<Term>> ImplicitCells::parameters_at(const eval::PlacedCell& cell,
-                                                                  const CellPoint& point) const {
+                                                              const CellPoint& point) const {
   const auto& parameters = cells_.unit_cell().parameters;
   const auto& instructions = cells_.pattern().instructions;
   const LengthUnit unit = evaluation_.document().unit;
   std::vector<Term> values;
   for (const double v : cell.parameters) values.push_back(Term::constant(v));
   const auto position = [&](const std::string& name) {
-    return static_cast<std::size_t>(std::ranges::find(parameters, name, [](const CellParameter& p) {
-                                      return p.name.text;
-                                    }) - parameters.begin());
+    return static_cast<std::size_t>(
+        std::ranges::find(parameters, name, [](const CellParameter& p) { return p.name.text; }) - parameters.begin());
   };
   std::vector<bool> is_set(parameters.size(), false);
   std::vector<const SetInstruction*> at_points;

@@ -263,8 +263,9 @@ std::optional<Field> Maker::conformal_block(const eval::BoxShape& box, const Blo
     const double turn = 2 * std::numbers::pi;
     if (element->system->axes()[a].kind != AxisKind::circular || element->to[a] - element->from[a] <= turn * (1 + 1e-9))
       continue;
-    report_(Code::conformal_overlap, cells_.pattern().id_in_source,
-            {element->system->axes()[a].name, format_number((element->to[a] - element->from[a]) * 180 / std::numbers::pi)});
+    report_(
+        Code::conformal_overlap, cells_.pattern().id_in_source,
+        {element->system->axes()[a].name, format_number((element->to[a] - element->from[a]) * 180 / std::numbers::pi)});
     return std::nullopt;
   }
   const auto body = conformal_body(cell, box, *element);
@@ -317,8 +318,7 @@ std::optional<Field> Maker::cell_by_cell() {
     const Box3 box = field->bounds();
     if (!box.empty()) reach = std::max(reach, norm(box.max - box.min) / 4);
   }
-  return Field::external(
-      std::make_shared<const PlacedCells>(PrimitiveIndex(std::move(primitives), {}), reach));
+  return Field::external(std::make_shared<const PlacedCells>(PrimitiveIndex(std::move(primitives), {}), reach));
 }
 
 std::optional<PatternField> Maker::make(const KeepCell& keep, const RunOptions& run) {

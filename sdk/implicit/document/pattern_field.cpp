@@ -39,13 +39,10 @@ Field placed_cells(std::vector<Primitive> primitives, const std::optional<Repeti
   double reach = 0;
   for (const Primitive& p : primitives) reach = std::max(reach, reach_of(p));
   if (primitives.empty()) return nothing();
-  return Field::external(
-      std::make_shared<const PlacedCells>(PrimitiveIndex(std::move(primitives), repetition), reach));
+  return Field::external(std::make_shared<const PlacedCells>(PrimitiveIndex(std::move(primitives), repetition), reach));
 }
 
-bool is_implicit(const eval::CellStream& cells) {
-  return std::holds_alternative<ImplicitBody>(cells.unit_cell().body);
-}
+bool is_implicit(const eval::CellStream& cells) { return std::holds_alternative<ImplicitBody>(cells.unit_cell().body); }
 
 }  // namespace
 

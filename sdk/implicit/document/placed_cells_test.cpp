@@ -6,9 +6,9 @@
 #include <random>
 
 #include "cell_primitives.hpp"
-#include "strut_rows.hpp"
 #include "meso/implicit/compile.hpp"
 #include "meso/implicit/document_field.hpp"
+#include "strut_rows.hpp"
 
 namespace meso::implicit {
 namespace {
@@ -75,7 +75,8 @@ TEST(PlacedCells, ARepetitionIsItsCopies) {
   for (int i = 0; i < 4; ++i)
     for (int j = 0; j < 3; ++j)
       for (int k = 0; k < 2; ++k)
-        for (const Primitive& p : one) all.push_back(p.moved_by(repetition.steps * Vec3{double(i), double(j), double(k)}));
+        for (const Primitive& p : one)
+          all.push_back(p.moved_by(repetition.steps * Vec3{double(i), double(j), double(k)}));
   const PlacedCells folded(PrimitiveIndex(one, repetition), 0.5);
   for (int i = 0; i < 2000; ++i) {
     const Vec3 p = number.point(6) + Vec3{3, 2, 1};
@@ -129,7 +130,8 @@ TEST(PlacedCells, InstructionSetsGiveEqualBits) {
   strut_row_sse2::row(capsules.data(), capsules.size(), line, x, expected);
   for (std::size_t i = 0; i < 8; ++i) {
     double least = HUGE_VAL;
-    for (const Capsule& c : capsules) least = std::min(least, axis_distance(c, line.origin + x[i] * line.direction) - c.radius);
+    for (const Capsule& c : capsules)
+      least = std::min(least, axis_distance(c, line.origin + x[i] * line.direction) - c.radius);
     EXPECT_DOUBLE_EQ(expected[i], least);
   }
   if (is_supported(InstructionSet::avx2)) {

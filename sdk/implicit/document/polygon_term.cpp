@@ -63,8 +63,8 @@ Field extrusion(const eval::ExtrusionShape& shape) {
   for (const auto& [x, y] : shape.points) box.extend({x, y, 0});
   const Vec3 half{(box.max.x - box.min.x) / 2, (box.max.y - box.min.y) / 2, shape.height / 2};
   const Vec3 middle{box.min.x + half.x, box.min.y + half.y, shape.z + half.z};
-  const Field slab = intersection_of(Field::half_space({0, 0, 1}, shape.z + shape.height),
-                                     Field::half_space({0, 0, -1}, -shape.z));
+  const Field slab =
+      intersection_of(Field::half_space({0, 0, 1}, shape.z + shape.height), Field::half_space({0, 0, -1}, -shape.z));
   // The box holds the body and changes nothing but bounds().
   return intersection_of(intersection_of(profile(shape.points), slab), Field::box(half).translated(middle));
 }

@@ -52,7 +52,7 @@ struct PlacedField {
 
 /// One of the two, and a box around it.
 struct Primitive {
-  Capsule capsule;      ///< where `placed` holds no field
+  Capsule capsule;  ///< where `placed` holds no field
   PlacedField placed{};
   Box3 box;
 

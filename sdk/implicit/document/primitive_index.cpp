@@ -25,7 +25,8 @@ PrimitiveIndex::PrimitiveIndex(std::vector<Primitive> primitives, const std::opt
     places_.push_back(inverse_ * (p.box.min + half));
     reaches_.push_back(absolute_inverse_ * half);
     for (unsigned corner = 0; corner < 8; ++corner) {
-      const Vec3 d = repetition_->steps * Vec3{corner & 1 ? last.x : 0, corner & 2 ? last.y : 0, corner & 4 ? last.z : 0};
+      const Vec3 d =
+          repetition_->steps * Vec3{corner & 1 ? last.x : 0, corner & 2 ? last.y : 0, corner & 4 ? last.z : 0};
       box_.extend(p.box.min + d);
       box_.extend(p.box.max + d);
     }

@@ -83,8 +83,7 @@ class PrimitiveIndex {
     }
   }
   [[nodiscard]] std::int64_t clamped(double steps, std::size_t axis) const {
-    return static_cast<std::int64_t>(
-        std::fmin(std::fmax(steps, 0), static_cast<double>(repetition_->count[axis] - 1)));
+    return static_cast<std::int64_t>(std::fmin(std::fmax(steps, 0), static_cast<double>(repetition_->count[axis] - 1)));
   }
 
   void build(std::uint32_t node, std::uint32_t first, std::uint32_t last);
@@ -93,7 +92,7 @@ class PrimitiveIndex {
   std::optional<Repetition> repetition_;
   Box3 box_;
   std::vector<Node> nodes_;
-  Mat3 inverse_, absolute_inverse_;      ///< of the steps
+  Mat3 inverse_, absolute_inverse_;     ///< of the steps
   std::vector<Vec3> places_, reaches_;  ///< of a primitive's box, in steps
 };
 

@@ -76,10 +76,10 @@ struct ShapeFields::Maker {
     for (const eval::Shape& operand : s.operands) {
       const auto field = self.make(operand);
       if (!field) return std::nullopt;
-      result = !result                                        ? *field
-               : s.operation == BooleanOperation::union_      ? joined(*result, *field)
+      result = !result                                       ? *field
+               : s.operation == BooleanOperation::union_     ? joined(*result, *field)
                : s.operation == BooleanOperation::difference ? difference_of(*result, field->offset(seam))
-                                                              : intersection_of(*result, *field);
+                                                             : intersection_of(*result, *field);
     }
     return result ? result : nothing();
   }

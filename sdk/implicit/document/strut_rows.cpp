@@ -6,44 +6,64 @@
 #define MESO_JOIN2(a, b) a##b
 #define MESO_JOIN(a, b) MESO_JOIN2(a, b)
 
+#include <immintrin.h>
+
 namespace meso::implicit {
 namespace {
 
-using Lanes = double __attribute__((vector_size(strut_lanes * sizeof(double))));
+#if defined(__AVX512F__)
+constexpr std::size_t width = 8;
+#elif defined(__AVX2__)
+constexpr std::size_t width = 4;
+#else
+constexpr std::size_t width = 2;
+#endif
+constexpr std::size_t parts = strut_lanes / width;
 
+using Lanes = double __attribute__((vector_size(width * sizeof(double))));
 struct Unaligned {
   Lanes lanes;
 } __attribute__((packed, may_alias));
+
+inline Lanes splat(double v) { return v - Lanes{}; }
+#if defined(__AVX512F__)
+inline Lanes square_root(Lanes v) { return (Lanes)_mm512_maskz_sqrt_pd(0xff, (__m512d)v); }
+#elif defined(__AVX2__)
+inline Lanes square_root(Lanes v) { return (Lanes)_mm256_sqrt_pd((__m256d)v); }
+#else
+inline Lanes square_root(Lanes v) { return (Lanes)_mm_sqrt_pd((__m128d)v); }
+#endif
 
 }  // namespace
 
 namespace MESO_JOIN(strut_row_, MESO_STRUT_ISA) {
 
-// The same operations in the same order as axis_distance().
-void row(const Capsule* capsules, std::size_t count, const Line& line, const double* x, double* out) {
-  const Lanes zero{}, one = zero + 1, xs = reinterpret_cast<const Unaligned*>(x)->lanes;
-  const Lanes px = line.origin.x + xs * line.direction.x, py = line.origin.y + xs * line.direction.y,
-              pz = line.origin.z + xs * line.direction.z;
-  Lanes best = zero + __builtin_huge_val();
-  for (std::size_t c = 0; c < count;) {
-    const double radius = capsules[c].radius;
-    Lanes nearest = zero + __builtin_huge_val();
-    for (; c < count && capsules[c].radius == radius; ++c) {
-      const Capsule& s = capsules[c];
-      const Lanes wx = px - s.from.x, wy = py - s.from.y, wz = pz - s.from.z;
-      Lanes t = (wx * s.axis.x + wy * s.axis.y + wz * s.axis.z) * s.inverse_length2;
-      t = t < zero ? zero : t;
-      t = t > one ? one : t;
-      const Lanes dx = wx - t * s.axis.x, dy = wy - t * s.axis.y, dz = wz - t * s.axis.z;
-      const Lanes d = dx * dx + dy * dy + dz * dz;
-      nearest = d < nearest ? d : nearest;
+  // The same operations in the same order as axis_distance().
+  void row(const Capsule* capsules, std::size_t count, const Line& line, const double* x, double* out) {
+    for (std::size_t part = 0; part < parts; ++part) {
+      const Lanes xs = reinterpret_cast<const Unaligned*>(x + part * width)->lanes;
+      const Lanes px = line.origin.x + xs * line.direction.x, py = line.origin.y + xs * line.direction.y,
+                  pz = line.origin.z + xs * line.direction.z;
+      Lanes best = splat(__builtin_huge_val());
+      for (std::size_t c = 0; c < count;) {
+        const double radius = capsules[c].radius;
+        Lanes nearest = splat(__builtin_huge_val());
+        for (; c < count && capsules[c].radius == radius; ++c) {
+          const Capsule& s = capsules[c];
+          const Lanes wx = px - s.from.x, wy = py - s.from.y, wz = pz - s.from.z;
+          Lanes t = (wx * s.axis.x + wy * s.axis.y + wz * s.axis.z) * s.inverse_length2;
+          t = t < 0 ? splat(0) : t;
+          t = t > 1 ? splat(1) : t;
+          const Lanes dx = wx - t * s.axis.x, dy = wy - t * s.axis.y, dz = wz - t * s.axis.z;
+          const Lanes d = dx * dx + dy * dy + dz * dz;
+          nearest = d < nearest ? d : nearest;
+        }
+        nearest = square_root(nearest) - radius;
+        best = nearest < best ? nearest : best;
+      }
+      reinterpret_cast<Unaligned*>(out + part * width)->lanes = best;
     }
-    for (std::size_t i = 0; i < strut_lanes; ++i) nearest[i] = __builtin_sqrt(nearest[i]);
-    nearest -= radius;
-    best = nearest < best ? nearest : best;
   }
-  reinterpret_cast<Unaligned*>(out)->lanes = best;
-}
 
-}  // namespace MESO_JOIN(strut_row_, MESO_STRUT_ISA)
+}  // namespace )
 }  // namespace meso::implicit

@@ -16,8 +16,8 @@ struct Line {
   Vec3 origin, direction;
 };
 
-/// out[i]: the least of the capsules' distances at x[i], i < strut_lanes; HUGE_VAL without capsules. Those of one radius
-/// should stand together: they share a root.
+/// out[i]: the least of the capsules' distances at x[i], i < strut_lanes; HUGE_VAL without capsules. Those of one
+/// radius should stand together: they share a root.
 using StrutRow = void (*)(const Capsule* capsules, std::size_t count, const Line& line, const double* x, double* out);
 
 /// The best that this machine runs.

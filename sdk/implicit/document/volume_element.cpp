@@ -1,13 +1,45 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "volume_element.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <numbers>
+#include <vector>
 
 #include "coordinate_inverse.hpp"
-#include "meso/eval/bounds.hpp"
 #include "meso/implicit/document_field.hpp"
 
 namespace meso::implicit {
+namespace {
+
+/// Where lengths are fixed, P runs along arcs; where angles are, it is linear. So the box of P at the ends of the
+/// lengths and at closely spaced angles holds everything but the arcs' sagittas.
+Box3 box_around(const eval::VolumeElementShape& shape) {
+  constexpr int arcs = 96;
+  const auto& axes = shape.system->axes();
+  double arm = 0, sagitta = 0;
+  std::array<int, 3> steps{};
+  for (std::size_t i = 0; i < 3; ++i) {
+    const AxisKind kind = axes[shape.axes[i]].kind;
+    steps[i] = kind == AxisKind::circular ? arcs : 1;
+    if (kind == AxisKind::distance) arm += std::max(std::abs(shape.from[i]), std::abs(shape.to[i]));
+    if (kind == AxisKind::circular) sagitta += 1 - std::cos((shape.to[i] - shape.from[i]) / arcs / 2);
+  }
+  Box3 box;
+  std::vector<double> q(axes.size(), 0);
+  for (int a = 0; a <= steps[0]; ++a)
+    for (int b = 0; b <= steps[1]; ++b)
+      for (int c = 0; c <= steps[2]; ++c) {
+        const std::array<int, 3> at{a, b, c};
+        for (std::size_t i = 0; i < 3; ++i)
+          q[shape.axes[i]] = shape.from[i] + (shape.to[i] - shape.from[i]) * at[i] / steps[i];
+        box.extend(shape.system->point(q));
+      }
+  const double by = arm * sagitta + seam;
+  return {box.min - Vec3{by, by, by}, box.max + Vec3{by, by, by}};
+}
+
+}  // namespace
 
 std::optional<Field> volume_element(const eval::VolumeElementShape& shape) {
   constexpr double turn = 2 * std::numbers::pi;
@@ -29,7 +61,7 @@ std::optional<Field> volume_element(const eval::VolumeElementShape& shape) {
     walls = walls ? max(*walls, wall) : wall;
   }
   // A box that holds the element: its bounds.
-  const Box3 box = *eval::bounds({shape});
+  const Box3 box = box_around(shape);
   const Vec3 extent = 0.5 * (box.max - box.min);
   return intersection_of(Field::from_term(*walls), Field::box(extent).translated(box.min + extent));
 }

@@ -236,6 +236,11 @@ Field Field::mirrored(Vec3 normal) const {
   return Field(moved(node_, flip, flip, 1));
 }
 
+Field Field::mapped(const Affine& map, const Affine& inverse, double value_factor) const {
+  assert(value_factor > 0);
+  return Field(operation(Move{map, inverse, value_factor}, node_));
+}
+
 Field Field::offset(double distance) const {
   assert(!check_number("", distance));
   return Field(operation(Offset{distance}, node_));

@@ -7,9 +7,12 @@
 //   if (made) operations::write_body(*made, "ibeam.step", {}, sink);
 //   const auto report = operations::convert("ibeam.meso", "ibeam.stl", {}, sink);   // both, with measures
 //
-// The extension of the output decides the format: .step .stp .brep .stl. Output files appear whole or not at all.
+// The extension of the output decides the format: .step .stp .brep of exact bodies, .stl .ply .obj .off .vtk of
+// triangles. Output files appear whole or not at all. Two engines make triangles: the exact one from its bodies, the
+// implicit one from a field on a grid of samples; `automatic` takes the exact one where it can make the part.
 // Lengths in millimetres, angles in radians. Thread rule: calls are independent of each other.
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -21,8 +24,11 @@
 #include "meso/brep/measure.hpp"
 #include "meso/brep/realise.hpp"
 #include "meso/eval/evaluation.hpp"
+#include "meso/operations/mesh_measures.hpp"
 
 namespace meso::operations {
+
+enum class Engine { automatic, brep, implicit };
 
 struct MakeOptions {
   std::vector<eval::Override> overrides{};
@@ -31,6 +37,11 @@ struct MakeOptions {
   std::optional<double> deflection_mm{};  ///< absent: the document's, else 0.02 times the smallest cell edge, else
                                           ///< 0.001 times the body's diagonal
   std::optional<double> angle_rad{};      ///< absent: the document's, else 0.5
+  Engine engine = Engine::automatic;
+  // Of the implicit engine. Absent: the document's samples, else a fifth of the smallest feature.
+  std::optional<double> spacing_mm{};
+  std::vector<double> samples{};  ///< one number for all, or three; instead of a spacing
+  bool measure = false;           ///< volume, area and pieces of the mesh: about half as much work again
   RunOptions run{};
 };
 
@@ -76,6 +87,10 @@ struct ConvertReport {
   std::uint64_t fragments = 0, triangles = 0, bytes = 0;
   bool closed = false;
   double deflection_mm = 0, angle_rad = 0;
+  // Of the implicit engine: its grid, and instead of `measures` those of the mesh if they are asked for.
+  std::array<std::int32_t, 3> grid_nodes{};
+  double spacing_mm = 0;
+  std::optional<MeshMeasures> mesh;
   Seconds seconds;
 };
 [[nodiscard]] std::optional<ConvertReport> convert(const std::filesystem::path& in, const std::filesystem::path& out,

@@ -71,6 +71,9 @@ class Field {
   /// Turned, the shortest way, so that its z axis points along `direction`; straight down is half a turn about x.
   [[nodiscard]] Field oriented(Vec3 direction) const;
   [[nodiscard]] Field mirrored(Vec3 normal) const;  ///< across the plane through the origin
+  /// By any affine map; values are multiplied by `value_factor`, which the map's least stretch makes a lower bound.
+  /// REQUIRES: a map whose inverse is `inverse`; a positive factor.
+  [[nodiscard]] Field mapped(const Affine& map, const Affine& inverse, double value_factor) const;
 
   // Levels.
   [[nodiscard]] Field offset(double distance) const;  ///< f - distance: grows by it

@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "make_mesh.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <system_error>
+
+#include "file_extension.hpp"
+#include "measured_mesh_sink.hpp"
+#include "mesh_grid.hpp"
+#include "meso/brep/read_step.hpp"
+#include "meso/export_mesh/mesh_writer.hpp"
+#include "meso/implicit/compile.hpp"
+#include "meso/implicit/contour.hpp"
+#include "meso/import_surface_mesh/read_surface_mesh.hpp"
+#include "meso/validate/validate.hpp"
+#include "meso/xml/read.hpp"
+#include "stopwatch.hpp"
+
+namespace meso::operations {
+namespace fs = std::filesystem;
+namespace {
+
+/// Curved faces of an exact body stand in the field as triangles this close, relative to the body's size.
+constexpr double import_deflection = 1e-4, import_angle = 0.1;
+
+std::optional<TriangleMesh> import_mesh(const eval::ImportShape& import, const RunOptions& run, DiagnosticSink& sink) {
+  const std::string extension = lower_extension(import.file);
+  if (extension == ".step" || extension == ".stp") {
+    const auto body =
+        brep::read_step(import.file, {.relative_deflection = import_deflection, .angle_rad = import_angle}, run, sink);
+    return body ? std::optional(triangle_mesh(*body)) : std::nullopt;
+  }
+  return read_surface_mesh_file(import.file.string(), sink);
+}
+
+/// What is built: one field, and what is known of it.
+struct Built {
+  implicit::Field field;
+  double smallest_feature_mm = HUGE_VAL;
+  brep::CellCounts cells;
+};
+
+std::optional<Built> build(const eval::Evaluation& evaluation, const MakeOptions& options, DiagnosticSink& sink) {
+  const implicit::DocumentFieldOptions field_options{
+      .imports = [&](const eval::ImportShape& import,
+                     DiagnosticSink& told) { return import_mesh(import, options.run, told); },
+      .run = options.run,
+      .spacing_mm = options.spacing_mm.value_or(0)};
+  std::optional<Built> all;
+  for (const PlacedPart& item : built_parts(evaluation, options.part, sink)) {
+    const auto placement = evaluation.placement(item.placement, sink);
+    const auto part = placement ? implicit::field_of_part(evaluation, *item.part, field_options, sink) : std::nullopt;
+    if (!part) return std::nullopt;
+    const implicit::Field placed = implicit::moved(part->field, *placement);
+    if (!all)
+      all = Built{placed};
+    else
+      all->field = implicit::union_of(all->field, placed);
+    all->smallest_feature_mm = std::min(all->smallest_feature_mm, part->smallest_feature_mm);
+    all->cells.placed += part->cells_placed;
+    all->cells.kept += part->cells_kept;
+  }
+  return all;
+}
+
+/// Into a file, measured on the way if that is asked for.
+bool write_mesh_file(const implicit::GridSource& source, const fs::path& out, const MakeOptions& options,
+                     const WriteOptions& write, ConvertReport& report, DiagnosticSink& sink) {
+  auto file = OutputFile::create(out.string(), write.no_clobber ? ExistingFile::refuse : ExistingFile::replace, sink);
+  if (!file) return false;
+  const MeshFormat format = *mesh_format_of(out.string());
+  const auto writer = make_mesh_writer(write.ascii ? MeshFormat::stl_ascii : format, *file);
+  MeasuredMeshSink<float> measured(*writer);
+  const std::size_t errors = sink.error_count();
+  const auto contoured =
+      implicit::contour(source, options.measure ? static_cast<MeshSink&>(measured) : *writer, {}, options.run, sink);
+  if (sink.error_count() > errors || !file->commit(sink) || !contoured) return false;
+  report.triangles = contoured->triangles;
+  const implicit::Grid& grid = source.grid();
+  if (options.measure) report.mesh = measured.measures(grid.spacing(0) * grid.spacing(1) * grid.spacing(2));
+  std::error_code error;
+  const auto bytes = fs::file_size(out, error);
+  report.bytes = error ? 0 : bytes;
+  return true;
+}
+
+}  // namespace
+
+std::optional<eval::Evaluation> open_document(const fs::path& document, const MakeOptions& options, Seconds& seconds,
+                                              DiagnosticSink& sink) {
+  Stopwatch watch;
+  auto read = read_document_file(document, sink);
+  const auto checked =
+      read ? validate(std::move(read->document), std::move(read->source), document.parent_path(), sink) : std::nullopt;
+  seconds.read = watch.lap();
+  auto evaluation = checked
+                        ? eval::Evaluation::make(*checked, {.overrides = options.overrides, .run = options.run}, sink)
+                        : std::nullopt;
+  seconds.evaluate = watch.lap();
+  return evaluation;
+}
+
+std::optional<ConvertReport> make_mesh(const eval::Evaluation& evaluation, const fs::path& out,
+                                       const MakeOptions& options, const WriteOptions& write, DiagnosticSink& sink) {
+  Stopwatch watch;
+  const auto built = build(evaluation, options, sink);
+  if (!built) return std::nullopt;
+  const Box3 bounds = built->field.bounds();
+  if (bounds.empty()) {
+    sink.report({.code = Code::geometry_empty, .args = {options.part}});
+    return std::nullopt;
+  }
+  const auto grid = mesh_grid(evaluation, options, bounds, built->smallest_feature_mm, sink);
+  if (!grid || !implicit::check_grid(*grid, options.run, sink)) return std::nullopt;
+  const auto source = implicit::compile(built->field.term(), *grid, {}, options.run, sink);
+  if (!source) return std::nullopt;
+  ConvertReport report{.engine = "implicit", .way = "field", .cells = built->cells, .closed = true};
+  report.grid_nodes = grid->nodes;
+  report.spacing_mm = std::max({grid->spacing(0), grid->spacing(1), grid->spacing(2)});
+  report.seconds.realise = watch.lap();
+  if (!write_mesh_file(*source, out, options, write, report, sink)) return std::nullopt;
+  if (report.triangles == 0) {
+    sink.report({.code = Code::geometry_empty, .args = {options.part}});
+    std::error_code ignored;
+    fs::remove(out, ignored);
+    return std::nullopt;
+  }
+  report.seconds.write = watch.lap();
+  report.seconds.total = watch.total();
+  return report;
+}
+
+}  // namespace meso::operations
