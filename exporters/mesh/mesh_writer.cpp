@@ -2,6 +2,7 @@
 #include "meso/export_mesh/mesh_writer.hpp"
 
 #include <array>
+#include <cassert>
 #include <utility>
 
 #include "ply_writer.hpp"
@@ -26,24 +27,32 @@ std::optional<MeshFormat> mesh_format_of(std::string_view path) {
   return std::nullopt;
 }
 
-std::unique_ptr<MeshSink> make_mesh_writer(MeshFormat format, OutputFile& file) {
+namespace {
+
+template <class Real>
+std::unique_ptr<MeshSink> make_writer(MeshFormat format, OutputFile& file) {
   switch (format) {
     case MeshFormat::ply:
-      return std::make_unique<PlyWriter<float>>(file);
-    case MeshFormat::ply_double:
-      return std::make_unique<PlyWriter<double>>(file);
+      return std::make_unique<PlyWriter<Real>>(file);
     case MeshFormat::stl:
       return std::make_unique<StlWriter>(file, StlFormat::binary);
     case MeshFormat::stl_ascii:
       return std::make_unique<StlWriter>(file, StlFormat::ascii);
     case MeshFormat::obj:
-      return std::make_unique<ObjWriter>(file);
+      return std::make_unique<ObjWriter<Real>>(file);
     case MeshFormat::off:
-      return std::make_unique<OffWriter>(file);
+      return std::make_unique<OffWriter<Real>>(file);
     case MeshFormat::vtk:
-      return std::make_unique<VtkWriter>(file);
+      return std::make_unique<VtkWriter<Real>>(file);
   }
   return nullptr;
+}
+
+}  // namespace
+
+std::unique_ptr<MeshSink> make_mesh_writer(MeshFormat format, OutputFile& file, Coordinates coordinates) {
+  assert(coordinates == Coordinates::as_float || can_hold_doubles(format));
+  return coordinates == Coordinates::as_double ? make_writer<double>(format, file) : make_writer<float>(format, file);
 }
 
 }  // namespace meso

@@ -27,11 +27,11 @@ TriangleMesh octahedron() {
           {{0, 2, 4}, {2, 1, 4}, {1, 3, 4}, {3, 0, 4}, {2, 0, 5}, {1, 2, 5}, {3, 1, 5}, {0, 3, 5}}};
 }
 
-std::string written(const TriangleMesh& mesh, MeshFormat format) {
+std::string written(const TriangleMesh& mesh, MeshFormat format, Coordinates coordinates = Coordinates::as_float) {
   const std::string path = (fs::temp_directory_path() / ("meso_mesh_" + std::to_string(getpid()))).string();
   DiagnosticSink diagnostics;
   auto file = OutputFile::create(path, ExistingFile::replace, diagnostics);
-  const std::unique_ptr<MeshSink> writer = make_mesh_writer(format, *file);
+  const std::unique_ptr<MeshSink> writer = make_mesh_writer(format, *file, coordinates);
   EXPECT_TRUE(write_mesh(mesh, *writer));
   EXPECT_TRUE(file->commit(diagnostics));
   std::ifstream in(path, std::ios::binary);
@@ -79,14 +79,15 @@ TriangleMesh parse_ply(std::string_view bytes) {
   return mesh;
 }
 
+template <class Real>
 TriangleMesh parse_vtk(std::string_view bytes) {
   EXPECT_TRUE(bytes.starts_with("# vtk DataFile Version 3.0\n"));
   EXPECT_NE(bytes.find("\nBINARY\nDATASET POLYDATA\n"), std::string_view::npos);
   TriangleMesh mesh;
   mesh.points.resize(count_after(bytes, "POINTS"));
-  std::string_view data = after(bytes, " float\n");
+  std::string_view data = after(bytes, sizeof(Real) == 4 ? " float\n" : " double\n");
   for (Vec3& p : mesh.points)
-    for (std::size_t i = 0; i < 3; ++i) p[i] = take<float>(data, true);
+    for (std::size_t i = 0; i < 3; ++i) p[i] = take<Real>(data, true);
   EXPECT_TRUE(data.starts_with("\nPOLYGONS "));
   mesh.triangles.resize(count_after(data, "POLYGONS"));
   EXPECT_EQ(count_after(data, "POLYGONS " + std::string(12, ' ').substr(0, 11) + std::to_string(mesh.triangles.size())),
@@ -100,6 +101,7 @@ TriangleMesh parse_vtk(std::string_view bytes) {
   return mesh;
 }
 
+template <class Real = float>
 TriangleMesh parse_obj(std::string_view text) {
   TriangleMesh mesh;
   std::istringstream lines{std::string(text)};
@@ -107,7 +109,9 @@ TriangleMesh parse_obj(std::string_view text) {
     std::istringstream words(line);
     std::string kind, a, b, c;
     words >> kind >> a >> b >> c;
-    if (kind == "v") mesh.points.push_back({std::stof(a), std::stof(b), std::stof(c)});
+    if (kind == "v")
+      mesh.points.push_back(
+          {static_cast<Real>(std::stod(a)), static_cast<Real>(std::stod(b)), static_cast<Real>(std::stod(c))});
     if (kind == "f")
       mesh.triangles.push_back({static_cast<std::uint32_t>(std::stoul(a) - 1),
                                 static_cast<std::uint32_t>(std::stoul(b) - 1),
@@ -116,6 +120,7 @@ TriangleMesh parse_obj(std::string_view text) {
   return mesh;
 }
 
+template <class Real = float>
 TriangleMesh parse_off(std::string_view text) {
   std::istringstream words{std::string(text)};
   std::string off;
@@ -128,9 +133,9 @@ TriangleMesh parse_off(std::string_view text) {
   mesh.triangles.resize(triangles);
   for (Vec3& p : mesh.points)
     for (std::size_t i = 0; i < 3; ++i) {
-      float c = 0;
+      double c = 0;
       words >> c;
-      p[i] = c;
+      p[i] = static_cast<Real>(c);
     }
   for (auto& t : mesh.triangles) {
     words >> corners >> t[0] >> t[1] >> t[2];
@@ -150,7 +155,15 @@ TEST(MeshWriter, PlyReadsBack) { expect_same(parse_ply<float>(written(octahedron
 TEST(MeshWriter, PlyKeepsDoubles) {
   TriangleMesh mesh = octahedron();
   mesh.points[0].x = 0.1;
-  expect_same(parse_ply<double>(written(mesh, MeshFormat::ply_double)), mesh);
+  expect_same(parse_ply<double>(written(mesh, MeshFormat::ply, Coordinates::as_double)), mesh);
+}
+
+TEST(MeshWriter, OtherFormatsKeepDoublesToo) {
+  TriangleMesh mesh = octahedron();
+  for (std::size_t i = 0; i < mesh.points.size(); ++i) mesh.points[i] += Vec3{1e9, 0.1, -1. / 3};
+  expect_same(parse_obj<double>(written(mesh, MeshFormat::obj, Coordinates::as_double)), mesh);
+  expect_same(parse_off<double>(written(mesh, MeshFormat::off, Coordinates::as_double)), mesh);
+  expect_same(parse_vtk<double>(written(mesh, MeshFormat::vtk, Coordinates::as_double)), mesh);
 }
 
 TEST(MeshWriter, PlyBeginsItsDataAfter256Bytes) {
@@ -159,7 +172,7 @@ TEST(MeshWriter, PlyBeginsItsDataAfter256Bytes) {
   EXPECT_EQ(bytes.size(), 256u + 6 * 12 + 8 * 13);
 }
 
-TEST(MeshWriter, VtkReadsBack) { expect_same(parse_vtk(written(octahedron(), MeshFormat::vtk)), octahedron()); }
+TEST(MeshWriter, VtkReadsBack) { expect_same(parse_vtk<float>(written(octahedron(), MeshFormat::vtk)), octahedron()); }
 
 TEST(MeshWriter, ObjReadsBack) { expect_same(parse_obj(written(octahedron(), MeshFormat::obj)), octahedron()); }
 
@@ -206,7 +219,7 @@ TEST(MeshWriter, StlKeepsMoreThanOnePieceOfPoints) {
 
 TEST(MeshWriter, EmptyMeshesAreFiles) {
   expect_same(parse_ply<float>(written({}, MeshFormat::ply)), {});
-  expect_same(parse_vtk(written({}, MeshFormat::vtk)), {});
+  expect_same(parse_vtk<float>(written({}, MeshFormat::vtk)), {});
   expect_same(parse_off(written({}, MeshFormat::off)), {});
   EXPECT_EQ(written({}, MeshFormat::stl).size(), 84u);
 }

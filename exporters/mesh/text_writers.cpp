@@ -24,8 +24,9 @@ void put_line(std::string_view lead, const std::array<Number, 3>& numbers, ByteB
   out.advance(static_cast<std::size_t>(to - begin));
 }
 
+template <class Real>
 void put_points(std::span<const Vec3> block, std::string_view lead, ByteBuffer& out) {
-  const auto real = [](double c) { return static_cast<float>(c) + 0.0F; };  // + 0: one zero, not two
+  const auto real = [](double c) { return static_cast<Real>(c) + Real{0}; };  // + 0: one zero, not two
   for (const Vec3& p : block) put_line(lead, std::array{real(p.x), real(p.y), real(p.z)}, out);
 }
 
@@ -39,24 +40,49 @@ std::string off_header(std::uint64_t points, std::uint64_t triangles) {
 
 }  // namespace
 
-bool ObjWriter::begin() { return file_.write("# millimetres, written by meso\n"); }
+template <class Real>
+bool ObjWriter<Real>::begin() {
+  return this->file_.write("# millimetres, written by meso\n");
+}
 
-void ObjWriter::encode_points(std::span<const Vec3> block, ByteBuffer& out) const { put_points(block, "v ", out); }
+template <class Real>
+void ObjWriter<Real>::encode_points(std::span<const Vec3> block, ByteBuffer& out) const {
+  put_points<Real>(block, "v ", out);
+}
 
-void ObjWriter::encode_triangles(std::span<const IndexTriangle> block, ByteBuffer& out) const {
+template <class Real>
+void ObjWriter<Real>::encode_triangles(std::span<const IndexTriangle> block, ByteBuffer& out) const {
   for (const IndexTriangle& t : block) put_line("f ", std::array{t[0] + 1, t[1] + 1, t[2] + 1}, out);  // from 1 on
 }
 
-bool ObjWriter::finish(std::uint64_t) { return true; }
+template <class Real>
+bool ObjWriter<Real>::finish(std::uint64_t) {
+  return true;
+}
 
-bool OffWriter::begin() { return file_.write(off_header(0, 0)); }
+template <class Real>
+bool OffWriter<Real>::begin() {
+  return this->file_.write(off_header(0, 0));
+}
 
-void OffWriter::encode_points(std::span<const Vec3> block, ByteBuffer& out) const { put_points(block, "", out); }
+template <class Real>
+void OffWriter<Real>::encode_points(std::span<const Vec3> block, ByteBuffer& out) const {
+  put_points<Real>(block, "", out);
+}
 
-void OffWriter::encode_triangles(std::span<const IndexTriangle> block, ByteBuffer& out) const {
+template <class Real>
+void OffWriter<Real>::encode_triangles(std::span<const IndexTriangle> block, ByteBuffer& out) const {
   for (const IndexTriangle& t : block) put_line("3 ", t, out);
 }
 
-bool OffWriter::finish(std::uint64_t triangle_count) { return file_.write_at(0, off_header(points_, triangle_count)); }
+template <class Real>
+bool OffWriter<Real>::finish(std::uint64_t triangle_count) {
+  return this->file_.write_at(0, off_header(this->points_, triangle_count));
+}
+
+template class ObjWriter<float>;
+template class ObjWriter<double>;
+template class OffWriter<float>;
+template class OffWriter<double>;
 
 }  // namespace meso

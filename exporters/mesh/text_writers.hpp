@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// OBJ and OFF: a line for every point and every triangle. Coordinates are the shortest text of their 32-bit float.
+// OBJ and OFF: a line for every point and every triangle. Coordinates are the shortest text of their float or double.
 
 #include "file_sink.hpp"
 
 namespace meso {
 
+template <class Real>
 class ObjWriter final : public FileSink {
  public:
   using FileSink::FileSink;
@@ -16,6 +17,7 @@ class ObjWriter final : public FileSink {
   [[nodiscard]] bool finish(std::uint64_t triangle_count) override;
 };
 
+template <class Real>
 class OffWriter final : public FileSink {
  public:
   using FileSink::FileSink;

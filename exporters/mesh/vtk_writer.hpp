@@ -6,6 +6,7 @@
 
 namespace meso {
 
+template <class Real>
 class VtkWriter final : public FileSink {
  public:
   using FileSink::FileSink;

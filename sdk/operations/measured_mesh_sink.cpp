@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "measured_mesh_sink.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <numeric>
 
@@ -15,6 +17,11 @@ struct TrianglesFrame {
   std::uint64_t bytes = 0, triangles = 0;
   double volume = 0, area = 0;
   std::uint64_t edge_balance = 0;
+};
+
+struct MeasuredTriangle {
+  IndexTriangle corners{};
+  double volume = 0;
 };
 
 /// Room for a frame, to be filled once what follows is there.
@@ -47,60 +54,71 @@ std::uint64_t edge_hash(std::uint32_t a, std::uint32_t b) {
 
 }  // namespace
 
-void MeasuredMeshSink::encode_points(std::span<const Vec3> block, ByteBuffer& out) const {
+template <class Real>
+void MeasuredMeshSink<Real>::encode_points(std::span<const Vec3> block, ByteBuffer& out) const {
   const std::size_t at = reserve_frame<PointsFrame>(out);
   into_.encode_points(block, out);
   put_frame(out, at, PointsFrame{.bytes = out.size() - at - sizeof(PointsFrame), .points = block.size()});
-  char* to = out.claim(block.size() * sizeof(points_[0]));
+  char* to = out.claim(block.size() * sizeof(Point));
   for (const Vec3& p : block) {
-    const std::array<float, 3> rounded{static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)};
+    const Point rounded{static_cast<Real>(p.x), static_cast<Real>(p.y), static_cast<Real>(p.z)};
     std::memcpy(to, &rounded, sizeof rounded);
     to += sizeof rounded;
   }
-  out.advance(block.size() * sizeof(points_[0]));
+  out.advance(block.size() * sizeof(Point));
 }
 
-bool MeasuredMeshSink::write_points(std::string_view bytes) {
+template <class Real>
+bool MeasuredMeshSink<Real>::write_points(std::string_view bytes) {
   while (!bytes.empty()) {
     const auto frame = take<PointsFrame>(bytes);
     if (!into_.write_points(bytes.substr(0, frame.bytes))) return false;
     bytes.remove_prefix(frame.bytes);
     const std::size_t first = points_.size();
     points_.resize(first + frame.points);
-    std::memcpy(points_.data() + first, bytes.data(), frame.points * sizeof(points_[0]));
-    bytes.remove_prefix(frame.points * sizeof(points_[0]));
+    std::memcpy(points_.data() + first, bytes.data(), frame.points * sizeof(Point));
+    bytes.remove_prefix(frame.points * sizeof(Point));
     for (std::size_t i = first; i < points_.size(); ++i)
       measures_.box.extend({points_[i][0], points_[i][1], points_[i][2]});
   }
   return true;
 }
 
-bool MeasuredMeshSink::begin_triangles(std::uint64_t point_count) {
+template <class Real>
+bool MeasuredMeshSink<Real>::begin_triangles(std::uint64_t point_count) {
   parents_.resize(point_count);
   std::iota(parents_.begin(), parents_.end(), 0u);
+  enclosed_.assign(point_count, 0);
   return into_.begin_triangles(point_count);
 }
 
-void MeasuredMeshSink::encode_triangles(std::span<const IndexTriangle> block, ByteBuffer& out) const {
+template <class Real>
+void MeasuredMeshSink<Real>::encode_triangles(std::span<const IndexTriangle> block, ByteBuffer& out) const {
   const std::size_t at = reserve_frame<TrianglesFrame>(out);
   into_.encode_triangles(block, out);
   TrianglesFrame frame{.bytes = out.size() - at - sizeof frame, .triangles = block.size()};
-  const auto point = [&](std::uint32_t i) { return Vec3{points_[i][0], points_[i][1], points_[i][2]}; };
+  // Seen from a point of the mesh: far from the origin the terms would be large and cancel.
+  const Vec3 eye = points_.empty() ? Vec3{} : point(0);
+  char* to = out.claim(block.size() * sizeof(MeasuredTriangle));
   for (const IndexTriangle& t : block) {
     const Vec3 a = point(t[0]), b = point(t[1]), c = point(t[2]);
     const Vec3 twice = cross(b - a, c - a);
-    frame.volume += dot(a, twice) / 6;
+    const MeasuredTriangle measured{.corners = t, .volume = dot(a - eye, twice) / 6};
+    frame.volume += measured.volume;
     frame.area += norm(twice) / 2;
     for (std::size_t i = 0; i < 3; ++i) {
-      const std::uint32_t from = t[i], to = t[(i + 1) % 3];
-      frame.edge_balance += from < to ? edge_hash(from, to) : 0 - edge_hash(to, from);
+      const std::uint32_t from = t[i], next = t[(i + 1) % 3];
+      frame.edge_balance += from < next ? edge_hash(from, next) : 0 - edge_hash(next, from);
     }
+    std::memcpy(to, &measured, sizeof measured);
+    to += sizeof measured;
   }
+  out.advance(block.size() * sizeof(MeasuredTriangle));
   put_frame(out, at, frame);
-  out.append({reinterpret_cast<const char*>(block.data()), block.size_bytes()});
 }
 
-bool MeasuredMeshSink::write_triangles(std::string_view bytes) {
+template <class Real>
+bool MeasuredMeshSink<Real>::write_triangles(std::string_view bytes) {
   while (!bytes.empty()) {
     const auto frame = take<TrianglesFrame>(bytes);
     if (!into_.write_triangles(bytes.substr(0, frame.bytes))) return false;
@@ -110,20 +128,31 @@ bool MeasuredMeshSink::write_triangles(std::string_view bytes) {
     measures_.triangles += frame.triangles;
     edge_balance_ += frame.edge_balance;
     for (std::uint64_t i = 0; i < frame.triangles; ++i) {
-      const auto t = take<IndexTriangle>(bytes);
-      const std::uint32_t a = root(t[0]);
-      // The smaller number stays root: paths stay short along the order in which points are made.
-      for (const std::uint32_t other : {root(t[1]), root(t[2])}) {
-        const std::uint32_t top = root(a);
-        if (other < top) parents_[top] = other;
-        if (top < other) parents_[other] = top;
-      }
+      const auto t = take<MeasuredTriangle>(bytes);
+      enclosed_[join(t.corners)] += t.volume;
     }
   }
   return true;
 }
 
-std::uint32_t MeasuredMeshSink::root(std::uint32_t point) {
+/// The three corners' common root.
+template <class Real>
+std::uint32_t MeasuredMeshSink<Real>::join(const IndexTriangle& t) {
+  std::uint32_t top = root(t[0]);
+  // The smaller number stays root: paths stay short along the order in which points are made.
+  for (const std::uint32_t corner : {t[1], t[2]}) {
+    const std::uint32_t other = root(corner);
+    if (other == top) continue;
+    const std::uint32_t stays = std::min(top, other), goes = std::max(top, other);
+    parents_[goes] = stays;
+    enclosed_[stays] += enclosed_[goes];
+    top = stays;
+  }
+  return top;
+}
+
+template <class Real>
+std::uint32_t MeasuredMeshSink<Real>::root(std::uint32_t point) {
   while (parents_[point] != point) {
     parents_[point] = parents_[parents_[point]];  // path halving
     point = parents_[point];
@@ -131,15 +160,20 @@ std::uint32_t MeasuredMeshSink::root(std::uint32_t point) {
   return point;
 }
 
-bool MeasuredMeshSink::finish(std::uint64_t triangle_count) { return into_.finish(triangle_count); }
-
-MeshMeasures MeasuredMeshSink::measures() const {
+template <class Real>
+MeshMeasures MeasuredMeshSink<Real>::measures(double crumb) const {
   MeshMeasures out = measures_;
   out.points = points_.size();
   out.closed = edge_balance_ == 0;
   out.euler = static_cast<std::int64_t>(out.points) - static_cast<std::int64_t>(out.triangles / 2);
-  for (std::uint32_t i = 0; i < parents_.size(); ++i) out.components += parents_[i] == i ? 1 : 0;
+  for (std::uint32_t i = 0; i < parents_.size(); ++i) {
+    if (parents_[i] != i) continue;
+    ++(std::abs(enclosed_[i]) < crumb ? out.crumbs : enclosed_[i] > 0 ? out.components : out.cavities);
+  }
   return out;
 }
+
+template class MeasuredMeshSink<float>;
+template class MeasuredMeshSink<double>;
 
 }  // namespace meso::operations

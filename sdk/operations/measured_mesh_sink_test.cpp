@@ -24,11 +24,11 @@ TEST(MeasuredMeshSink, MeasuresWhatItPassesOn) {
   add_cube(cubes, {1, 2, 3}, 2);
   add_cube(cubes, {-5, 0, 0}, 1);
   MemoryMeshSink into(kept);
-  MeasuredMeshSink measured(into);
+  MeasuredMeshSink<float> measured(into);
   ASSERT_TRUE(write_mesh(cubes, measured));
   EXPECT_EQ(kept.points, cubes.points);
   EXPECT_EQ(kept.triangles, cubes.triangles);
-  const MeshMeasures m = measured.measures();
+  const MeshMeasures m = measured.measures(0);
   EXPECT_DOUBLE_EQ(m.volume, 9);
   EXPECT_DOUBLE_EQ(m.area, 30);
   EXPECT_EQ(m.points, 16u);
@@ -39,11 +39,47 @@ TEST(MeasuredMeshSink, MeasuresWhatItPassesOn) {
   EXPECT_EQ(m.box, (Box3{{-5, 0, 0}, {3, 4, 5}}));
 }
 
+TEST(MeasuredMeshSink, MeasuresWhatIsWritten) {
+  // A float near 1e8 is a multiple of 8.
+  TriangleMesh cube, kept;
+  add_cube(cube, {1e8 + 1, 0, 0}, 1.25);
+  MemoryMeshSink into(kept);
+  MeasuredMeshSink<double> doubles(into);
+  MeasuredMeshSink<float> floats(into);
+  ASSERT_TRUE(write_mesh(cube, doubles) && write_mesh(cube, floats));
+  EXPECT_NEAR(doubles.measures(0).volume, 1.25 * 1.25 * 1.25, 1e-6);
+  EXPECT_EQ(doubles.measures(0).box.min.x, 1e8 + 1);
+  EXPECT_EQ(floats.measures(0).volume, 0);
+}
+
+TEST(MeasuredMeshSink, TellsPiecesFromCavitiesAndCrumbs) {
+  TriangleMesh mesh, hole, kept;
+  add_cube(mesh, {1e3, 0, 0}, 4);
+  add_cube(mesh, {1e3 + 8, 0, 0}, 2);
+  add_cube(mesh, {1e3 + 16, 0, 0}, 0.0625);
+  add_cube(hole, {1e3 + 1, 1, 1}, 1);
+  for (auto& t : hole.triangles) std::swap(t[1], t[2]);
+  const auto base = static_cast<std::uint32_t>(mesh.points.size());
+  for (const auto& t : hole.triangles) mesh.triangles.push_back({t[0] + base, t[1] + base, t[2] + base});
+  mesh.points.insert(mesh.points.end(), hole.points.begin(), hole.points.end());
+  MemoryMeshSink into(kept);
+  MeasuredMeshSink<float> measured(into);
+  ASSERT_TRUE(write_mesh(mesh, measured));
+  const MeshMeasures all = measured.measures(0), large = measured.measures(0.001);
+  EXPECT_EQ(all.components, 3u);
+  EXPECT_EQ(all.cavities, 1u);
+  EXPECT_EQ(all.crumbs, 0u);
+  EXPECT_EQ(large.components, 2u);
+  EXPECT_EQ(large.cavities, 1u);
+  EXPECT_EQ(large.crumbs, 1u);
+  EXPECT_NEAR(all.volume, 64 + 8 - 1 + 0.0625 * 0.0625 * 0.0625, 1e-9);
+}
+
 TEST(MeasuredMeshSink, ReadsJoinedBlocks) {
   TriangleMesh cube, kept;
   add_cube(cube, {0, 0, 0}, 1);
   MemoryMeshSink into(kept);
-  MeasuredMeshSink measured(into);
+  MeasuredMeshSink<float> measured(into);
   ASSERT_TRUE(measured.begin());
   ByteBuffer bytes;
   measured.encode_points(std::span(cube.points).first(3), bytes);
@@ -56,8 +92,8 @@ TEST(MeasuredMeshSink, ReadsJoinedBlocks) {
   ASSERT_TRUE(measured.write_triangles(bytes.view()));
   ASSERT_TRUE(measured.finish(12));
   EXPECT_EQ(kept.triangles, cube.triangles);
-  EXPECT_DOUBLE_EQ(measured.measures().volume, 1);
-  EXPECT_EQ(measured.measures().components, 1u);
+  EXPECT_DOUBLE_EQ(measured.measures(0).volume, 1);
+  EXPECT_EQ(measured.measures(0).components, 1u);
 }
 
 TEST(MeasuredMeshSink, SeesHolesAndTurnedTriangles) {
@@ -70,20 +106,20 @@ TEST(MeasuredMeshSink, SeesHolesAndTurnedTriangles) {
       cube.triangles.pop_back();
     }
     MemoryMeshSink into(kept);
-    MeasuredMeshSink measured(into);
+    MeasuredMeshSink<float> measured(into);
     ASSERT_TRUE(write_mesh(cube, measured));
-    EXPECT_FALSE(measured.measures().closed);
+    EXPECT_FALSE(measured.measures(0).closed);
   }
 }
 
 TEST(MeasuredMeshSink, AnEmptyMeshIsClosed) {
   TriangleMesh none, kept;
   MemoryMeshSink into(kept);
-  MeasuredMeshSink measured(into);
+  MeasuredMeshSink<float> measured(into);
   ASSERT_TRUE(write_mesh(none, measured));
-  EXPECT_TRUE(measured.measures().closed);
-  EXPECT_EQ(measured.measures().components, 0u);
-  EXPECT_TRUE(measured.measures().box.empty());
+  EXPECT_TRUE(measured.measures(0).closed);
+  EXPECT_EQ(measured.measures(0).components, 0u);
+  EXPECT_TRUE(measured.measures(0).box.empty());
 }
 
 }  // namespace

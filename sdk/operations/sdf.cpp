@@ -3,17 +3,20 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <system_error>
 
 #include "measured_mesh_sink.hpp"
+#include "meso/base/number.hpp"
 #include "meso/export_mesh/mesh_writer.hpp"
 #include "meso/implicit/compile.hpp"
 #include "meso/implicit/contour.hpp"
 #include "meso/import_surface_mesh/read_surface_mesh.hpp"
 #include "meso/mesh_distance/mesh_field.hpp"
 #include "meso/sdf/build_field.hpp"
+#include "meso/sdf/thinnest_wall.hpp"
 #include "stopwatch.hpp"
 
 namespace meso::operations {
@@ -21,23 +24,42 @@ namespace fs = std::filesystem;
 
 namespace {
 
-std::optional<MeshFormat> format_of(const std::string& output, const SdfOptions& options, DiagnosticSink& sink) {
-  const auto format = mesh_format_of(output);
+struct Output {
+  MeshFormat format{};
+  Coordinates coordinates{};
+};
+
+std::optional<Output> output_of(const std::string& path, const SdfOptions& options, DiagnosticSink& sink) {
+  const auto format = mesh_format_of(path);
   const auto refuse = [&](const char* why) {
     sink.report({.code = Code::usage, .args = {why}});
     return std::nullopt;
   };
-  if (!format) sink.report({.code = Code::sdf_extension, .args = {output}});
-  if (options.double_coordinates && format != MeshFormat::ply) return refuse("--double has an effect for .ply only");
+  if (!format) {
+    sink.report({.code = Code::sdf_extension, .args = {path}});
+    return std::nullopt;
+  }
   if (options.ascii && format != MeshFormat::stl) return refuse("--ascii has an effect for .stl only");
-  if (options.double_coordinates) return MeshFormat::ply_double;
-  return options.ascii ? MeshFormat::stl_ascii : format;
+  Output output{.format = options.ascii ? MeshFormat::stl_ascii : *format, .coordinates = Coordinates::as_float};
+  if (options.double_coordinates) {
+    if (!can_hold_doubles(output.format)) return refuse("--double has no effect for .stl, which holds floats");
+    output.coordinates = Coordinates::as_double;
+  }
+  return output;
+}
+
+/// Between two steps: whether to go on. Steps themselves report what stopped them.
+bool go_on(const RunOptions& run, DiagnosticSink& sink) {
+  if (!run.should_stop()) return true;
+  sink.report({.code = run.out_of_time() ? Code::limit_time : Code::cancelled});
+  return false;
 }
 
 std::shared_ptr<const implicit::ExternalField> load_field(const std::string& path, const RunOptions& run,
                                                           DiagnosticSink& sink) {
+  if (!go_on(run, sink)) return nullptr;
   const auto mesh = read_surface_mesh_file(path, sink);
-  return mesh ? implicit::MeshField::make(*mesh, path, run, sink) : nullptr;
+  return mesh && go_on(run, sink) ? implicit::MeshField::make(*mesh, path, run, sink) : nullptr;
 }
 
 implicit::Grid grid_of(const sdf::Program& program, const Box3& box) {
@@ -69,55 +91,153 @@ class Nothing final : public implicit::GridSource {
   implicit::Grid grid_;
 };
 
-/// Contours into a file; the file's own faults are told by commit().
-bool write_surface(const implicit::GridSource& source, MeshFormat format, const sdf::Program& program,
-                   const SdfOptions& options, SdfReport& report, DiagnosticSink& sink) {
-  auto file = OutputFile::create(program.output, options.existing, sink);
-  if (!file) return false;
-  const auto writer = make_mesh_writer(format, *file);
-  MeasuredMeshSink measured(*writer);
-  const std::size_t errors = sink.error_count();
+double largest_spacing(const implicit::Grid& grid) {
+  return std::max({grid.spacing(0), grid.spacing(1), grid.spacing(2)});
+}
+
+/// A program made ready for contouring on any grid.
+class Job {
+ public:
+  Job(const sdf::Program& program, const SdfOptions& options, DiagnosticSink& sink)
+      : program_(program), options_(options), sink_(sink) {}
+
+  std::optional<SdfReport> run(const Output& output);
+
+ private:
+  std::unique_ptr<implicit::GridSource> source_on(const implicit::Grid& grid) const;
+  bool write(const Output& output);
+  template <class Real>
+  bool contour_into(MeshSink& writer);
+  bool extrapolate();
+  void warn(const Output& output) const;
+  bool warn_of_rounding(const Output& output) const;
+
+  const sdf::Program& program_;
+  const SdfOptions& options_;
+  DiagnosticSink& sink_;
+  std::optional<implicit::Field> field_;
+  bool certainly_empty_ = false;
+  SdfReport report_;
+};
+
+std::unique_ptr<implicit::GridSource> Job::source_on(const implicit::Grid& grid) const {
+  if (certainly_empty_) return std::make_unique<Nothing>(grid.box);
+  if (!implicit::check_grid(grid, options_.run, sink_)) return nullptr;
+  return implicit::compile(field_->term(), grid, {.strict_math = options_.strict_math}, options_.run, sink_);
+}
+
+template <class Real>
+bool Job::contour_into(MeshSink& writer) {
+  const auto source = source_on(report_.grid);
+  if (!source) return false;
+  MeasuredMeshSink<Real> measured(writer);
   const auto contoured =
-      implicit::contour(source, options.measure ? measured : *writer,
-                        {.polish = options.polish, .collapse_slivers = options.no_slivers}, options.run, sink);
-  if (!contoured && sink.error_count() == errors && options.run.cancelled && options.run.cancelled()) {
-    sink.report({.code = Code::cancelled});
-  }
-  if (sink.error_count() > errors || !file->commit(sink) || !contoured) return false;
-  report.points = contoured->points;
-  report.triangles = contoured->triangles;
-  report.euler = contoured->euler;
-  if (options.measure) report.measures = measured.measures();
-  std::error_code error;
-  const auto bytes = fs::file_size(program.output, error);
-  report.bytes = error ? 0 : bytes;
-  if (report.triangles == 0) sink.report({.code = Code::sdf_empty, .args = {program.output}});
+      implicit::contour(*source, options_.measure ? static_cast<MeshSink&>(measured) : writer,
+                        {.polish = options_.polish, .collapse_slivers = options_.no_slivers}, options_.run, sink_);
+  if (!contoured) return false;
+  report_.points = contoured->points;
+  report_.triangles = contoured->triangles;
+  report_.euler = contoured->euler;
+  const implicit::Grid& grid = report_.grid;
+  if (options_.measure) report_.measures = measured.measures(grid.spacing(0) * grid.spacing(1) * grid.spacing(2));
   return true;
+}
+
+/// Contours into a file; the file's own faults are told by commit().
+bool Job::write(const Output& output) {
+  auto file = OutputFile::create(program_.output, options_.existing, sink_);
+  if (!file) return false;
+  const auto writer = make_mesh_writer(output.format, *file, output.coordinates);
+  const std::size_t errors = sink_.error_count();
+  const bool contoured =
+      output.coordinates == Coordinates::as_double ? contour_into<double>(*writer) : contour_into<float>(*writer);
+  if (sink_.error_count() > errors || !file->commit(sink_) || !contoured) return false;
+  std::error_code error;
+  const auto bytes = fs::file_size(program_.output, error);
+  report_.bytes = error ? 0 : bytes;
+  return true;
+}
+
+/// Errors of volume and area go with the square of the spacing, so those of half as many samples along each axis tell
+/// what the limit is (Richardson 1911).
+bool Job::extrapolate() {
+  implicit::Grid coarse = report_.grid;
+  double ratio = 1;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const std::int32_t cells = coarse.nodes[axis] - 1;
+    if (cells < 4) return true;
+    coarse.nodes[axis] = cells / 2 + 1;
+    ratio *= coarse.spacing(axis) / report_.grid.spacing(axis);
+  }
+  RunOptions run = options_.run;
+  run.progress = nullptr;  // it would begin anew
+  const auto source = source_on(coarse);
+  NoMesh none;
+  MeasuredMeshSink<double> measured(none);
+  if (!source || !implicit::contour(*source, measured, {.polish = options_.polish}, run, sink_)) return false;
+  const MeshMeasures& fine = *report_.measures;
+  const MeshMeasures half = measured.measures(0);
+  const double square = std::pow(ratio, 2. / 3), share = 1 / (square - 1);
+  report_.extrapolated = {.volume = fine.volume + share * (fine.volume - half.volume),
+                          .area = fine.area + share * (fine.area - half.area)};
+  return true;
+}
+
+void Job::warn(const Output& output) const {
+  if (report_.triangles == 0) sink_.report({.code = Code::sdf_empty, .args = {program_.output}});
+  const bool rounded = warn_of_rounding(output);
+  const double spacing = largest_spacing(report_.grid);
+  if (const auto wall = sdf::thinnest_wall(program_); wall && wall->thickness < spacing) {
+    const sdf::Word& word = wall->made_by->word;
+    Diagnostic d{.code = Code::sdf_thin_wall,
+                 .args = {word.text, format_number(wall->thickness), format_number(spacing)}};
+    point_at(d, word);
+    sink_.report(std::move(d));
+  } else if (!rounded && report_.measures && 2 * report_.measures->volume < spacing * report_.measures->area) {
+    const double thickness = 2 * report_.measures->volume / report_.measures->area;
+    sink_.report({.code = Code::sdf_coarse, .args = {format_number(thickness), format_number(spacing)}});
+  }
+}
+
+/// Whether floats are too coarse for the coordinates. Contouring keeps vertices a thousandth of a cell apart.
+bool Job::warn_of_rounding(const Output& output) const {
+  if (output.coordinates == Coordinates::as_double || report_.triangles == 0) return false;
+  const implicit::Grid& grid = report_.grid;
+  double reach = 0;
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    reach = std::max({reach, std::abs(grid.box.min[axis]), std::abs(grid.box.max[axis])});
+  const double step = std::nextafter(static_cast<float>(reach), HUGE_VALF) - static_cast<float>(reach),
+               spacing = std::min({grid.spacing(0), grid.spacing(1), grid.spacing(2)});
+  if (step <= 4e-3 * spacing) return false;
+  sink_.report({.code = Code::sdf_far,
+                .args = {format_number(reach), format_number(step), program_.output, format_number(spacing)}});
+  return true;
+}
+
+std::optional<SdfReport> Job::run(const Output& output) {
+  Stopwatch watch;
+  const auto load = [&](const std::string& path, DiagnosticSink& told) { return load_field(path, options_.run, told); };
+  field_ = sdf::build_field(program_, load, sink_);
+  if (!field_ || !go_on(options_.run, sink_)) return std::nullopt;
+  const auto box = sdf::box_of(program_, *field_, sink_);
+  if (!box || !go_on(options_.run, sink_)) return std::nullopt;
+  certainly_empty_ = box->certainly_empty;
+  report_.grid = grid_of(program_, box->box);
+  report_.seconds.read = watch.lap();
+  if (!write(output)) return std::nullopt;
+  report_.seconds.contour = watch.lap();
+  if (options_.measure && report_.triangles > 0 && !extrapolate()) return std::nullopt;
+  report_.seconds.extrapolate = watch.lap();
+  warn(output);
+  report_.seconds.total = watch.total();
+  return report_;
 }
 
 }  // namespace
 
 std::optional<SdfReport> run_sdf(const sdf::Program& program, const SdfOptions& options, DiagnosticSink& sink) {
-  Stopwatch watch;
-  const auto format = format_of(program.output, options, sink);
-  if (!format) return std::nullopt;
-  const auto load = [&](const std::string& path, DiagnosticSink& told) { return load_field(path, options.run, told); };
-  const auto field = sdf::build_field(program, load, sink);
-  if (!field) return std::nullopt;
-  const auto box = sdf::box_of(program, *field, sink);
-  if (!box) return std::nullopt;
-  SdfReport report{.grid = grid_of(program, box->box)};
-  report.seconds.read = watch.lap();
-  std::unique_ptr<implicit::GridSource> source;
-  if (box->certainly_empty) {
-    source = std::make_unique<Nothing>(box->box);
-  } else {
-    source = implicit::compile(field->term(), report.grid, {.strict_math = options.strict_math});
-  }
-  if (!write_surface(*source, *format, program, options, report, sink)) return std::nullopt;
-  report.seconds.contour = watch.lap();
-  report.seconds.total = watch.total();
-  return report;
+  const auto output = output_of(program.output, options, sink);
+  return output ? Job(program, options, sink).run(*output) : std::nullopt;
 }
 
 sdf::ProgramOptions::Text read_text(const std::string& path) {
@@ -131,6 +251,8 @@ sdf::ProgramOptions::Text read_text(const std::string& path) {
   in.read(text.data(), static_cast<std::streamsize>(text.size()));
   text.resize(static_cast<std::size_t>(in.gcount()));
   if (text.size() > most_text_bytes) return {.why_not = "it holds more than 16 MiB"};
+  if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF"))
+    return {.why_not = "it is UTF-16; save it as UTF-8"};
   return {.text = std::move(text)};
 }
 

@@ -12,6 +12,50 @@ namespace {
 
 constexpr std::string_view surface_prefix = "tpms.";
 
+/// What other programs call our words.
+struct Synonym {
+  std::string_view theirs, ours;
+};
+constexpr Synonym synonyms[] = {{"sphere", "ball"},
+                                {"cube", "box"},
+                                {"cuboid", "box"},
+                                {"tube", "cylinder"},
+                                {"plane", "half-space"},
+                                {"halfspace", "half-space"},
+                                {"formula", "expression"},
+                                {"function", "expression"},
+                                {"mesh", "file"},
+                                {"import", "file"},
+                                {"load", "file"},
+                                {"not", "complement"},
+                                {"invert", "complement"},
+                                {"negate", "complement"},
+                                {"inverse", "complement"},
+                                {"thicken", "offset"},
+                                {"grow", "offset"},
+                                {"dilate", "offset"},
+                                {"erode", "offset"},
+                                {"hollow", "shell"},
+                                {"sheet", "shell"},
+                                {"translate", "move"},
+                                {"shift", "move"},
+                                {"resize", "scale"},
+                                {"turn", "rotate"},
+                                {"align", "orient"},
+                                {"reflect", "mirror"},
+                                {"flip", "mirror"},
+                                {"add", "union"},
+                                {"join", "union"},
+                                {"or", "union"},
+                                {"merge", "union"},
+                                {"and", "intersection"},
+                                {"intersect", "intersection"},
+                                {"subtract", "difference"},
+                                {"minus", "difference"},
+                                {"cut", "difference"},
+                                {"primitive", "tpms.p"},
+                                {"schwarz", "tpms.p"}};
+
 std::string solids(std::size_t n) { return std::to_string(n) + (n == 1 ? " solid" : " solids"); }
 
 /// Words one after the other, files opened where they are included.
@@ -214,11 +258,21 @@ class ProgramParser {
   }
 
   bool unknown(const Word& word) {
-    const std::string near = nearest_word(word.text);
-    return fail(word, Code::sdf_unknown_word, {word.text, near.empty() ? "" : "; did you mean '" + near + "'?"});
+    return fail(word, Code::sdf_unknown_word, {word.text, suggestion(nearest_word(word.text))});
+  }
+
+  /// With what the word takes: who does not know its name does not know that either.
+  static std::string suggestion(const std::string& near) {
+    if (near.empty()) return "";
+    const Vocable* vocable = find_vocable(near);
+    const std::string meant = "; did you mean '" + near + "'?";
+    if (vocable == nullptr || vocable->argument.empty()) return meant;
+    return meant + " Write: " + near + " " + std::string(vocable->argument);
   }
 
   [[nodiscard]] std::string nearest_word(const std::string& word) const {
+    for (const Synonym& s : synonyms)
+      if (s.theirs == word) return std::string(s.ours);
     std::vector<std::string_view> known{"-b", "-s", "-o", "--help", "--version"};
     for (const Vocable& v : vocabulary()) known.push_back(v.word);
     for (const CallerFlag& flag : options_.caller_flags) known.push_back(flag.name);

@@ -168,6 +168,18 @@ TEST(Language, FaultsAreShownInTheWords) {
             "                      ^");
 }
 
+TEST(Language, WordsOfOtherProgramsAreUnderstoodWell) {
+  EXPECT_THAT(parse("sphere").text(), HasSubstr("there is no word 'sphere'; did you mean 'ball'? (stack depth 0)"));
+  EXPECT_THAT(parse("ball translate 1,0,0").text(),
+              HasSubstr("there is no word 'translate'; did you mean 'move'? Write: move dx,dy,dz (stack depth 1)"));
+  EXPECT_THAT(parse("ball roate 0,0,1 pi").text(), HasSubstr("did you mean 'rotate'? Write: rotate x,y,z a"));
+  EXPECT_THAT(parse("tmps.gyroid").text(), HasSubstr("did you mean 'tpms.gyroid'?"));
+  const Files files{{"bom.txt",
+                     "\xEF\xBB\xBF"
+                     "ball # with a byte order mark"}};
+  EXPECT_EQ(parse("@bom.txt", files).text(), "no diagnostic");
+}
+
 TEST(Language, EveryFaultHasItsCode) {
   const std::pair<const char*, Code> cases[] = {
       {"", Code::sdf_stack_left},

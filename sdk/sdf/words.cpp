@@ -58,7 +58,8 @@ std::optional<std::vector<Word>> words_of_text(std::string text, std::string nam
   const auto source = std::make_shared<const WordSource>(WordSource{std::move(name), std::move(text)});
   const std::string& all = source->text;
   std::vector<Word> words;
-  for (std::size_t i = 0; i < all.size();) {
+  constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
+  for (std::size_t i = all.starts_with(byte_order_mark) ? byte_order_mark.size() : 0; i < all.size();) {
     if (is_white(all[i])) {
       ++i;
       continue;

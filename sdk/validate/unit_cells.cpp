@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // macrostructures and unit cells, what they need and what their expressions see.
+#include <algorithm>
+
 #include "families.hpp"
+#include "surface_names.hpp"
 #include "walk.hpp"
 
 namespace meso {
@@ -29,6 +32,15 @@ void check_box(Context& c, const CellBox& box, const Scope& scope) {
   c.require_positive(box, "dz", box.dz);
 }
 
+void check_surface(Context& c, const ImplicitBody& body) {
+  std::string_view name = *body.surface;
+  constexpr std::string_view prefix = "tpms.";  // as the command language writes it
+  if (name.starts_with(prefix)) name.remove_prefix(prefix.size());
+  const auto known = surface_names();
+  if (std::ranges::find(known, name) == known.end())
+    c.report(Code::implicit_unknown_surface, body, "surface", {*body.surface, c.suggestion(name, known)});
+}
+
 void check_implicit(Context& c, const UnitCell& cell, const ImplicitBody& body, const Scope& outer) {
   Scope scope(&outer);
   for (const char* name : {"x", "y", "z"}) {
@@ -39,6 +51,7 @@ void check_implicit(Context& c, const UnitCell& cell, const ImplicitBody& body, 
   walk(body, ExpressionCheck{c, scope});
   if (body.field.has_value() == body.surface.has_value())
     c.report(Code::choice_needed, body, "", {"field and surface", body.field ? "both" : "none"});
+  if (body.surface) check_surface(c, body);
   c.require_positive(body, "thickness", body.thickness);
   if (!cell.box) c.report(Code::box_needed, cell, "", {cell.id.text, "implicit bodies are cut to it"});
 }

@@ -6,10 +6,11 @@
 //   const std::unique_ptr<MeshSink> writer = make_mesh_writer(MeshFormat::ply, *file);
 //   if (contour(*source, *writer, {}, run, diagnostics) && file->commit(diagnostics)) ...
 //
-// Coordinates are 32-bit floats, but for ply_double. Text has the shortest numbers that read back as the same float.
-// All but the STL formats, which have no shared points, take constant memory. A file that failed says so at
-// OutputFile::commit(); formats that count ahead (all but OBJ and ASCII STL) cannot be written to a pipe. Equal meshes
-// give equal bytes, however they are cut into blocks.
+// Coordinates are 32-bit floats or, where it is asked for, doubles (not of STL, whose binary form has floats only).
+// Text has the shortest numbers that read back as the same float or double. All but the STL formats, which have no
+// shared points, take constant memory. A file that failed says so at OutputFile::commit(); formats that count ahead
+// (all but OBJ and ASCII STL) cannot be written to a pipe. Equal meshes give equal bytes, however they are cut into
+// blocks.
 
 #include <memory>
 #include <optional>
@@ -20,12 +21,18 @@
 
 namespace meso {
 
-enum class MeshFormat { ply, ply_double, stl, stl_ascii, obj, off, vtk };
+enum class MeshFormat { ply, stl, stl_ascii, obj, off, vtk };
+enum class Coordinates { as_float, as_double };
 
 /// By the ending of a file's name, upper or lower case: .ply .stl .obj .off .vtk.
 [[nodiscard]] std::optional<MeshFormat> mesh_format_of(std::string_view path);
 
-/// `file` must outlive the writer.
-[[nodiscard]] std::unique_ptr<MeshSink> make_mesh_writer(MeshFormat format, OutputFile& file);
+[[nodiscard]] constexpr bool can_hold_doubles(MeshFormat format) {
+  return format != MeshFormat::stl && format != MeshFormat::stl_ascii;
+}
+
+/// `file` must outlive the writer. REQUIRES: doubles only where the format can hold them.
+[[nodiscard]] std::unique_ptr<MeshSink> make_mesh_writer(MeshFormat format, OutputFile& file,
+                                                         Coordinates coordinates = Coordinates::as_float);
 
 }  // namespace meso

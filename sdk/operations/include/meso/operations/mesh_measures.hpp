@@ -11,7 +11,11 @@ namespace meso::operations {
 struct MeshMeasures {
   double volume = 0, area = 0;
   std::uint64_t points = 0, triangles = 0;
-  std::uint64_t components = 0;  ///< of triangles that share points; closed ones may lie inside others
+  // Shells are triangles that share points. One around a piece of the solid encloses a positive volume, one around a
+  // cavity a negative one.
+  std::uint64_t components = 0;  ///< pieces of the solid
+  std::uint64_t cavities = 0;    ///< hollows within them that nothing connects with the outside
+  std::uint64_t crumbs = 0;      ///< shells of either kind too small to count among these
   /// Every edge is run through as often in one direction as in the other; wrong with a chance of 2^-64.
   bool closed = false;
   std::int64_t euler = 0;  ///< points - edges + triangles, three edges for two triangles

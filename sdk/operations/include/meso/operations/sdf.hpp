@@ -7,8 +7,9 @@
 //   sink); const auto report = operations::run_sdf(*program, {.measure = true}, sink); report->measures->volume   //
 //   about 4
 //
-// Output files appear whole or not at all. An empty solid is a file without triangles, and SDF_EMPTY. Thread rule:
-// calls are independent of each other; each uses RunOptions::jobs threads.
+// Output files appear whole or not at all. An empty solid is a file without triangles, and SDF_EMPTY; samples too far
+// apart for the solid are SDF_THIN_WALL or SDF_COARSE, coordinates too large for floats SDF_FAR, all warnings. Thread
+// rule: calls are independent of each other; each uses RunOptions::jobs threads.
 
 #include <optional>
 #include <string>
@@ -22,12 +23,13 @@
 namespace meso::operations {
 
 struct SdfOptions {
-  /// Volume, area, pieces: about as much work again, and 16 bytes of memory a vertex.
+  /// Volume, area, pieces: about as much work again, and 36 bytes of memory a vertex; and a quarter of all for what
+  /// half as many samples along each axis say.
   bool measure = false;
   bool strict_math = false;         ///< formulas as written, none regrouped
   bool polish = false;              ///< vertices on the surface itself, not on the samples' interpolant
   bool no_slivers = false;          ///< very narrow triangles collapsed
-  bool double_coordinates = false;  ///< of .ply
+  bool double_coordinates = false;  ///< not of .stl, which has floats only
   bool ascii = false;               ///< of .stl
   ExistingFile existing = ExistingFile::replace;
   RunOptions run{};
@@ -38,9 +40,16 @@ struct SdfReport {
   std::uint64_t points = 0, triangles = 0;
   std::int64_t euler = 0;
   std::uint64_t bytes = 0;
+  /// Of the mesh as it was written. Components and cavities hold at least a cell of the grid.
   std::optional<MeshMeasures> measures;
+  /// What the measures tend to as samples are added: where the solid is smooth, errors go with the square of the
+  /// spacing, and here with its fourth power. Nothing for a few samples or an empty solid.
+  struct Limit {
+    double volume = 0, area = 0;
+  };
+  std::optional<Limit> extrapolated;
   struct {
-    double read = 0, contour = 0, total = 0;
+    double read = 0, contour = 0, extrapolate = 0, total = 0;
   } seconds;  ///< wall-clock; contouring includes writing
 };
 

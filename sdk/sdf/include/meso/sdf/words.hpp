@@ -6,7 +6,8 @@
 //   const auto b = words_of_text("ball shell 0.2  # thin", "part.txt", sink);  // a file's text: ball, shell, 0.2
 //
 // In a text, white space separates words, '...' and "..." hold words together that contain any, and # at the beginning
-// of a word comments out the rest of the line. Errors: SDF_QUOTE. Words are values; threads may share them.
+// of a word comments out the rest of the line; a byte order mark of UTF-8 is passed over. Errors: SDF_QUOTE. Words are
+// values; threads may share them.
 
 #include <memory>
 #include <optional>
