@@ -31,7 +31,7 @@ TEST(Frd, ReadsNodesElementsAndResults) {
   DiagnosticSink sink;
   const auto table = read_field_frd(bytes_of("cube.frd"), "cube.frd", "", sink);
   ASSERT_TRUE(table) << render(sink.diagnostics().at(0));
-  EXPECT_EQ(names_of(*table), "x y z D1 D2 D3 SXX SYY SZZ SXY SYZ SZX");
+  EXPECT_EQ(names_of(*table), "x y z D1 D2 D3 SXX SYY SZZ SXY SYZ SZX STR___");
   ASSERT_EQ(table->records.rows(), 9U);
   EXPECT_EQ(table->records(8, 0), 0.5);
   EXPECT_EQ(table->records(8, 4), -4.86332e-05);

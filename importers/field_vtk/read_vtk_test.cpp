@@ -74,7 +74,7 @@ TEST(VtkFaults, AreReportedOnce) {
   EXPECT_THAT(fault_of(raw.substr(0, raw.size() - 100), "t.vtu"),
               testing::HasSubstr("fewer bytes than its header states"));
   std::string damaged = zlib;
-  const std::size_t at = damaged.find("\"s\"");
+  const std::size_t at = damaged.find("Name=\"s\"");
   const std::size_t data = damaged.find("eJ", at);
   ASSERT_NE(data, std::string::npos);
   damaged.replace(data + 4, 4, "AAAA");

@@ -111,6 +111,8 @@ class VtuReader {
       is_appended_raw_ = all["encoding"] == "raw";
     } else if (name == "Points" || name == "Cells" || name == "PointData" || name == "CellData") {
       group_ = name;
+    } else if (is_in_array_) {
+      ++inner_;  // an InformationKey: its text is no data
     } else if (name == "DataArray" && !group_.empty() && group_ != "CellData") {
       DataArray array{group_, all["Name"], all["type"], all["format"], 1, 0, {}};
       std::int64_t number = 0;
@@ -124,12 +126,15 @@ class VtuReader {
   }
   static void end(void* self, const XML_Char* name) {
     auto& reader = *static_cast<VtuReader*>(self);
-    if (std::strcmp(name, "DataArray") == 0) reader.is_in_array_ = false;
+    if (std::strcmp(name, "DataArray") == 0)
+      reader.is_in_array_ = false;
+    else if (reader.is_in_array_)
+      --reader.inner_;
     if (name == reader.group_) reader.group_.clear();
   }
   static void characters(void* self, const XML_Char* text, int size) {
     auto& reader = *static_cast<VtuReader*>(self);
-    if (reader.is_in_array_) reader.arrays_.back().text.append(text, static_cast<std::size_t>(size));
+    if (reader.is_in_array_ && reader.inner_ == 0) reader.arrays_.back().text.append(text, static_cast<std::size_t>(size));
   }
 
   bool fault(const DataArray& array, std::string what) {
@@ -278,7 +283,7 @@ class VtuReader {
   std::string type_, compressor_, group_;
   bool is_big_endian_ = false, is_appended_raw_ = false, is_in_array_ = false;
   std::size_t header_bytes_ = 4;
-  int pieces_ = 0;
+  int pieces_ = 0, inner_ = 0;
   std::vector<DataArray> arrays_;
   vtk::Content content_;
 };

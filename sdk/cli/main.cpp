@@ -20,6 +20,7 @@ void add_verbs(CLI::App& app, meso::cli::Run& run) {
   add_canonical(app, run);
 #ifdef MESO_CLI_EVAL
   add_eval(app, run);
+  add_field(app, run);
 #endif
 #ifdef MESO_CLI_BREP
   add_convert(app, run);

@@ -96,6 +96,7 @@ void add_canonical(CLI::App& app, Run& run);
 void add_formats(CLI::App& app, Run& run);
 void add_info(CLI::App& app, Run& run);
 void add_eval(CLI::App& app, Run& run);
+void add_field(CLI::App& app, Run& run);
 void add_convert(CLI::App& app, Run& run);
 void add_compare(CLI::App& app, Run& run);
 void add_verify(CLI::App& app, Run& run);

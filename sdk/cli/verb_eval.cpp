@@ -8,6 +8,9 @@
 #include "meso/base/number.hpp"
 #include "meso/base/output_file.hpp"
 #include "meso/eval/evaluation.hpp"
+#ifdef MESO_CLI_BREP
+#include "meso/operations/macrostructure_distance.hpp"
+#endif
 #include "overrides.hpp"
 #include "run.hpp"
 #include "stop.hpp"
@@ -148,6 +151,9 @@ int eval_verb(Run& run, const std::string& in, const std::string& out_path, cons
   if (!checked) return run.finish();
   eval::EvaluateOptions evaluate{.run = options};
   if (!parse_overrides(run, evaluate.overrides)) return run.finish();
+#ifdef MESO_CLI_BREP
+  evaluate.distance = operations::macrostructure_distance(evaluate.overrides, options);
+#endif
   const auto evaluation = eval::Evaluation::make(*checked, evaluate, run.sink);
   if (!evaluation) return run.finish();
   const Pattern* pattern = choose_pattern(*evaluation, pattern_id, run);

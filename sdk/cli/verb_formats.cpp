@@ -31,7 +31,9 @@ constexpr Format formats[] = {
     {".vtk", "legacy VTK polygons", false, true, "triangles, written by sdf"},
 #endif
 #ifdef MESO_CLI_EVAL
-    {".csv", "placed cells", false, true, "written by eval"},
+    {".csv", "table", true, true, "a field, read by documents and field; placed cells, written by eval"},
+    {".frd", "CalculiX results", true, false, "a field, read by documents and field"},
+    {".msh", "Gmsh node data", true, false, "a field, read by documents and field"},
     {".json", "placed cells", false, true, "written by eval"},
 #endif
 #ifdef MESO_CLI_RENDER
