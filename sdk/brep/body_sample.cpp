@@ -84,7 +84,8 @@ class PartSample {
     if (!cells) return false;
     state.cells.placed += cells->size();
     if (apply.operation == ApplyOperation::intersection) state.bodies.clear();
-    if (may_repeat && may_be_lattice(apply, macrostructure)) {
+    const bool clips = apply.boundary.value_or(BoundaryRule::clip) == BoundaryRule::clip;
+    if (may_repeat && clips && may_be_lattice(apply, macrostructure)) {
       if (auto lattice = lattice_sample(macrostructure, *cells, fineness(options_), context_)) {
         state.cells.kept += lattice->kept;
         std::ranges::move(lattice->bodies, std::back_inserter(state.bodies));

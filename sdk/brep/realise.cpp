@@ -67,7 +67,7 @@ class PartFold {
       const Pattern* pattern = evaluation_.find_pattern(apply.pattern->text);
       const auto cells = pattern != nullptr ? evaluation_.cells(*pattern, context_.sink) : std::nullopt;
       if (!cells) return false;
-      if (is_last && may_be_lattice(apply, state.solids) && try_lattice(state, *cells, apply, part.id.text))
+      if (is_last && may_be_lattice(apply, state.solids) && try_lattice(state, *cells, context, part.id.text))
         return true;
       if (context_.sink.has_errors()) return false;
       made = apply_cells(state.solids, *cells, context, counts);
@@ -80,16 +80,20 @@ class PartFold {
     return settle_fragments(state.solids, before, context, part.id.text, counts);
   }
 
-  bool try_lattice(Folded& state, const eval::CellStream& cells, const Apply& apply, const std::string& part) {
+  bool try_lattice(Folded& state, const eval::CellStream& cells, const FoldContext& context, const std::string& part) {
+    const Apply& apply = context.apply;
     if (cells.size() > options_.run.max_cells) return false;
-    auto lattice = lattice_part(state.solids, cells, fineness(options_), context_);
+    std::optional<CellRule> whole_cells;
+    if (const auto rule = apply.boundary.value_or(BoundaryRule::clip); rule != BoundaryRule::clip)
+      whole_cells = CellRule{rule, apply.test.value_or(InsideTest::box), context.clearance};
+    auto lattice = lattice_part(state.solids, cells, whole_cells, fineness(options_), context_);
     if (!lattice) return false;
     counts.placed += cells.size();
     counts.kept += lattice->kept;
     counts.crossing += lattice->crossing;
-    // Of a union nothing is loose that was not apart before; a cut body is one piece a solid at least.
+    // A union has no fragments; a cut body is one piece a solid at least.
     const std::size_t solids = lattice->body.solids.size(), whole = state.solids.size();
-    lattice->body.fragments = whole == 0 || solids <= whole ? 0 : solids - whole;
+    lattice->body.fragments = whole_cells || whole == 0 || solids <= whole ? 0 : solids - whole;
     counts.fragments += lattice->body.fragments;
     if (lattice->body.fragments > 0) {
       const FragmentRule rule = apply.fragments.value_or(FragmentRule::keep);
@@ -166,8 +170,8 @@ std::optional<Solids> macrostructure_solids(const eval::Evaluation& evaluation, 
 
 bool may_be_lattice(const Apply& apply, const Solids& body) {
   return apply.operation == (body.empty() ? ApplyOperation::union_ : ApplyOperation::intersection) &&
-         apply.boundary.value_or(BoundaryRule::clip) == BoundaryRule::clip &&
-         (apply.fragments.value_or(FragmentRule::keep) == FragmentRule::keep || body.size() == 1);
+         (apply.boundary.value_or(BoundaryRule::clip) != BoundaryRule::clip ||
+          apply.fragments.value_or(FragmentRule::keep) == FragmentRule::keep || body.size() == 1);
 }
 
 const Part* chosen_part(const eval::Evaluation& evaluation, std::optional<std::string_view> part_id,

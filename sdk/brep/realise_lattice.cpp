@@ -221,14 +221,14 @@ std::optional<FirstCell> first_cell(const eval::CellStream& cells, DiagnosticSin
 struct Found {
   AlignedLattice lattice;
   CellShape cell;
-  Solids body;
+  Solids body;                           ///< empty: the union of all cells
   std::shared_ptr<const Blocks> blocks;  ///< where the body's faces all lie on planes of the boxes
 };
 
 std::optional<Found> find_lattice(const Solids& macrostructure, const eval::CellStream& cells,
                                   const SolidContext& context) {
   const bool cut = cells.unit_cell().clip_to_box.value_or(false);
-  const auto steps = macrostructure.empty() && !cut ? std::nullopt : cells.lattice();
+  const auto steps = cells.lattice();
   if (!steps || cells.shape_varies()) return {};
   const auto first = first_cell(cells, context.sink);
   if (!first) return {};
@@ -237,12 +237,12 @@ std::optional<Found> find_lattice(const Solids& macrostructure, const eval::Cell
   Solids in_cell_frame;
   for (const TopoDS_Shape& solid : macrostructure)
     in_cell_frame.push_back(mapped(solid, inverse(lattice->world_from_cell)));
-  if (macrostructure.empty()) in_cell_frame.push_back(all_boxes(*lattice));
+  if (macrostructure.empty() && cut) in_cell_frame.push_back(all_boxes(*lattice));
   auto cell = repeated_cell(first->shape, lattice->box, context);
   if (!cell) return {};
   cell->cut_to_box = cut;
   std::shared_ptr<const Blocks> blocks;
-  if (const auto planes = face_planes(in_cell_frame, *lattice))
+  if (const auto planes = face_planes(in_cell_frame, *lattice); planes && !in_cell_frame.empty())
     blocks = std::make_shared<const Blocks>(in_cell_frame, *lattice, *planes);
   return Found{*lattice, std::move(*cell), std::move(in_cell_frame), std::move(blocks)};
 }
@@ -288,19 +288,34 @@ Body part_of(const Body& body, IndexTest takes) {
 }  // namespace
 
 std::optional<LatticePart> lattice_part(const Solids& macrostructure, const eval::CellStream& cells,
+                                        const std::optional<CellRule>& whole_cells,
                                         const std::optional<MeshFineness>& mesh, const SolidContext& context) {
   const auto found = find_lattice(macrostructure, cells, context);
   if (!found) return {};
   const auto& count = found->lattice.count;
   const Index3 last{count[0] - 1, count[1] - 1, count[2] - 1};
+  const LatticeOptions options{.mesh = mesh, .run = context.run};
   LatticePart out;
-  if (found->blocks) {
+  if (whole_cells || found->body.empty()) {
+    CellSelection taken{{{}, last, [](Index3) { return true; }}, cells.size(), 0};
+    if (whole_cells) {
+      auto selected = select_cells(found->cell, last, found->body, *whole_cells, context.run, context.sink);
+      if (!selected) return {};
+      taken = std::move(*selected);
+    }
+    out = {{}, taken.kept, taken.crossing};
+    if (out.kept == 0) return out;
+    auto body = lattice_union(found->cell, taken.set, options, context.sink);
+    if (!body) return {};
+    out.body = std::move(*body);
+    out.body.fragments = 0;
+  } else if (found->blocks) {
     out.kept = found->blocks->kept();
     if (out.kept == 0) return out;
     const LatticeSet set{.min = {0, 0, 0}, .max = last, .inside = [blocks = found->blocks](Index3 index) {
                            return blocks->inside(index);
                          }};
-    auto body = lattice_body(found->cell, set, {.mesh = mesh}, context.sink);
+    auto body = lattice_body(found->cell, set, options, context.sink);
     if (!body) return {};
     out.body = std::move(*body);
   } else {
@@ -328,7 +343,7 @@ std::optional<LatticeSample> lattice_sample(const Solids& macrostructure, const 
                          return i[0] >= first && i[0] < first + edge && i[1] >= 0 && i[1] < edge && i[2] >= 0 &&
                                 i[2] < edge;
                        }};
-  auto body = lattice_body(found->cell, set, {.mesh = mesh}, context.sink);
+  auto body = lattice_body(found->cell, set, {.mesh = mesh, .run = context.run}, context.sink);
   if (!body) return {};
   place(*body, found->lattice.world_from_cell);
   out.bodies.push_back({part_of(*body, [](Index3 i) { return i[0] < 3; }), of_small});

@@ -5,6 +5,7 @@
 
 #include <optional>
 
+#include "lattice/cell_selection.hpp"
 #include "meso/brep/body_sample.hpp"
 #include "meso/brep/lattice_body.hpp"
 #include "meso/eval/evaluation.hpp"
@@ -18,10 +19,11 @@ struct LatticePart {
   std::uint64_t crossing = 0;
 };
 
-/// Macrostructure n union of the cells, or without a macrostructure the union of cells that are cut to their boxes; or
-/// nothing, and no error in the sink, where that is not such a lattice. Errors of evaluation are reported. May throw
-/// Standard_Failure.
+/// Macrostructure n union of the cells, without a macrostructure the union of the cells, or of those that a boundary
+/// rule takes whole; or nothing, and no error in the sink, where that is not such a lattice. Errors of evaluation are
+/// reported. May throw Standard_Failure.
 [[nodiscard]] std::optional<LatticePart> lattice_part(const Solids& macrostructure, const eval::CellStream& cells,
+                                                      const std::optional<CellRule>& whole_cells,
                                                       const std::optional<MeshFineness>& mesh,
                                                       const SolidContext& context);
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <map>
+#include <string>
 
 #include "meso/brep/instance_map.hpp"
 #include "meso/brep/placement.hpp"
@@ -121,9 +122,10 @@ class Stitcher {
   /// The shells: which clusters of faces hang together.
   [[nodiscard]] UnionFind& nodes() { return nodes_; }
 
-  [[nodiscard]] bool stitch() {
+  [[nodiscard]] bool stitch(const RunOptions& run) {
     const KeptCells& cells = layout_.cells();
     for (std::uint32_t n = 0; n < cells.count(); ++n) {
+      if (n % 4096 == 0 && run.should_stop()) return false;
       const Index3 cell = cells.cell(n);
       for (const CellKind::EdgeAt& edge : layout_.quotient().kinds[layout_.kind(cell)].boundary_edges)
         if (!stitch_edge(n, edge.edge, cell + edge.offset)) return false;
@@ -324,7 +326,15 @@ CellKinds::CellKinds(const Reach& reach, const KeptCells& cells) : kinds_(cells.
   }
 }
 
-std::optional<Body> assemble(Quotient quotient, KeptCells cells, CellKinds kinds, DiagnosticSink& sink) {
+bool fit_in_memory(std::uint64_t boxes, const RunOptions& run, DiagnosticSink& sink) {
+  constexpr std::uint64_t bytes_per_box = 100;
+  if (boxes <= run.max_memory_bytes / bytes_per_box) return true;
+  sink.report({.code = Code::limit_memory, .args = {std::to_string(run.max_memory_bytes >> 20) + " MiB"}});
+  return false;
+}
+
+std::optional<Body> assemble(Quotient quotient, KeptCells cells, CellKinds kinds, const RunOptions& run,
+                             DiagnosticSink& sink) {
   const auto fault = [&](const char* what) {
     sink.report({.code = Code::geometry_not_repeatable, .args = {what}});
     return std::nullopt;
@@ -333,7 +343,12 @@ std::optional<Body> assemble(Quotient quotient, KeptCells cells, CellKinds kinds
   const auto layout = std::make_shared<Layout>(std::move(quotient), std::move(cells), std::move(kinds));
   if (any_walls_overlap(*layout)) return fault("cells meet in parts of their walls");
   Stitcher stitcher(*layout);
-  if (!stitcher.stitch()) return fault("the walls of neighbouring cells do not close");
+  const bool closed = stitcher.stitch(run);
+  if (run.should_stop()) {
+    sink.report({.code = run.out_of_time() ? Code::limit_time : Code::cancelled});
+    return {};
+  }
+  if (!closed) return fault("the walls of neighbouring cells do not close");
   std::uint32_t lumps = 1;
   double expected = 0;
   for (const CellKind& kind : layout->quotient().kinds) lumps = std::max(lumps, kind.lumps);

@@ -7,6 +7,7 @@
 
 #include "lattice/kept_cells.hpp"
 #include "lattice/quotient.hpp"
+#include "meso/base/run_options.hpp"
 
 namespace meso::brep {
 
@@ -28,7 +29,12 @@ class CellKinds {
 };
 
 /// Empty, with GEOMETRY_NOT_REPEATABLE, if some edge would not be used exactly twice by every sheet of surface that
-/// meets there, or the shells do not enclose the volume that the cells hold.
-[[nodiscard]] std::optional<Body> assemble(Quotient quotient, KeptCells cells, CellKinds kinds, DiagnosticSink& sink);
+/// meets there, or the shells do not enclose the volume that the cells hold. LIMIT_TIME or CANCELLED if the run is to
+/// stop.
+[[nodiscard]] std::optional<Body> assemble(Quotient quotient, KeptCells cells, CellKinds kinds, const RunOptions& run,
+                                           DiagnosticSink& sink);
+
+/// What the boxes of a lattice take until it is a body, about; false, and LIMIT_MEMORY, if that is over the budget.
+[[nodiscard]] bool fit_in_memory(std::uint64_t boxes, const RunOptions& run, DiagnosticSink& sink);
 
 }  // namespace meso::brep

@@ -6,6 +6,7 @@
 
 #include "face_moments.hpp"
 #include "lattice/primitive_field.hpp"
+#include "stop_watch.hpp"
 
 namespace meso::brep {
 namespace {
@@ -58,7 +59,8 @@ bool usable(const Frustum& frustum, double tolerance) {
          std::fmax(frustum.start_radius, frustum.end_radius) > tolerance;
 }
 
-TopoDS_Shape fused(const std::vector<TopoDS_Shape>& solids) {
+TopoDS_Shape fused(const std::vector<TopoDS_Shape>& solids, const RunOptions& run) {
+  const Handle(StopWatch) watch = new StopWatch(run);
   if (solids.size() == 1) return solids.front();
   TopTools_ListOfShape first, rest;
   for (const TopoDS_Shape& solid : solids) (first.IsEmpty() ? first : rest).Append(solid);
@@ -67,7 +69,7 @@ TopoDS_Shape fused(const std::vector<TopoDS_Shape>& solids) {
   fuse.SetTools(rest);
   fuse.SetNonDestructive(true);
   fuse.SetRunParallel(true);
-  fuse.Build();
+  fuse.Build(watch->Start());
   return fuse.HasErrors() ? TopoDS_Shape() : fuse.Shape();
 }
 
@@ -83,7 +85,8 @@ double volume_of(const TopoDS_Shape& shape) {
 }
 
 /// Common and Cut from one intersection: what is inside and what is outside must add up to what was there.
-std::optional<TopoDS_Shape> cut_to_box(const TopoDS_Shape& whole, const CellShape& cell) {
+std::optional<TopoDS_Shape> cut_to_box(const TopoDS_Shape& whole, const CellShape& cell, const RunOptions& run) {
+  const Handle(StopWatch) watch = new StopWatch(run);
   const TopoDS_Shape box = BRepPrimAPI_MakeBox(to_pnt(cell.box.min), to_pnt(cell.box.max)).Solid();
   TopTools_ListOfShape arguments, wholes, boxes;
   wholes.Append(whole);
@@ -94,7 +97,7 @@ std::optional<TopoDS_Shape> cut_to_box(const TopoDS_Shape& whole, const CellShap
   filler.SetArguments(arguments);
   filler.SetNonDestructive(true);
   filler.SetRunParallel(true);
-  filler.Perform();
+  filler.Perform(watch->Start());
   if (filler.HasErrors()) return {};
   BRepAlgoAPI_Common common(whole, box, filler);
   BRepAlgoAPI_Cut cut(whole, box, filler);
@@ -235,7 +238,8 @@ Reach reach_of(const CellShape& cell) {
 }
 
 std::optional<TopoDS_Shape> solid_in_box(const CellShape& cell, const Reach& reach,
-                                         const std::vector<std::uint32_t>& parts, DiagnosticSink& sink) {
+                                         const std::vector<std::uint32_t>& parts, const RunOptions& run,
+                                         DiagnosticSink& sink) {
   const Vec3 size = cell.size();
   std::vector<TopoDS_Shape> solids;
   std::vector<CellPrimitive> primitives;
@@ -250,8 +254,8 @@ std::optional<TopoDS_Shape> solid_in_box(const CellShape& cell, const Reach& rea
   if (solids.empty()) return TopoDS_Shape();
   const char* fault = nullptr;
   try {
-    const TopoDS_Shape whole = fused(solids);
-    const std::optional<TopoDS_Shape> inside = whole.IsNull() ? std::nullopt : cut_to_box(whole, cell);
+    const TopoDS_Shape whole = fused(solids, run);
+    const std::optional<TopoDS_Shape> inside = whole.IsNull() ? std::nullopt : cut_to_box(whole, cell, run);
     if (!inside) {
       fault = "the unit cell cannot be cut to its box";
     } else if (!primitives.empty()) {

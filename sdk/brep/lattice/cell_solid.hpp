@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "meso/base/diagnostic.hpp"
+#include "meso/base/run_options.hpp"
 #include "meso/brep/lattice_body.hpp"
 #include "occt.hpp"
 
@@ -49,8 +50,9 @@ struct Reach {
 [[nodiscard]] Reach reach_of(const CellShape& cell);
 
 /// The given parts, fused and cut to the box; null if there is nothing. Empty, with a diagnostic, if a boolean fails or
-/// its volume contradicts an independent one.
+/// its volume contradicts an independent one, or the run is to stop.
 [[nodiscard]] std::optional<TopoDS_Shape> solid_in_box(const CellShape& cell, const Reach& reach,
-                                                       const std::vector<std::uint32_t>& parts, DiagnosticSink& sink);
+                                                       const std::vector<std::uint32_t>& parts, const RunOptions& run,
+                                                       DiagnosticSink& sink);
 
 }  // namespace meso::brep

@@ -103,6 +103,7 @@ std::optional<ClippedLattice> clipped_lattice_body(const CellShape& cell, const 
   const CellGrid grid = grid_for(cell, reach, last, body);
   if (grid.count() == 0) return ClippedLattice{};
   if (grid.count() > run.max_cells) return fault("the body meets too many boxes");
+  if (!fit_in_memory(grid.count(), run, sink)) return {};
   const BodySurface surface(body, grid);
   KeptCells cells({.min = {}, .max = last, .inside = {}}, grid.min, grid.max,
                   [&](const Index3& index) { return surface.place(index) != BoxPlace::outside; });
@@ -134,10 +135,10 @@ std::optional<ClippedLattice> clipped_lattice_body(const CellShape& cell, const 
     out.crossing += task != KeptCells::none && plan.tasks[task].result.left == ClippedCell::Left::part;
   }
   if (out.kept == 0) return out;
-  auto quotient = build_quotient(cell, *solids, {.mesh = options.mesh}, 10 * cell.tolerance(), run, sink);
+  auto quotient = build_quotient(cell, *solids, {.mesh = options.mesh, .run = {}}, 10 * cell.tolerance(), run, sink);
   if (run.should_stop()) return stopped();
   if (!quotient) return {};
-  auto made = assemble(std::move(*quotient), std::move(cells), std::move(kinds), sink);
+  auto made = assemble(std::move(*quotient), std::move(cells), std::move(kinds), run, sink);
   if (!made) return {};
   out.body = std::move(*made);
   return out;

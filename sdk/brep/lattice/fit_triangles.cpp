@@ -32,25 +32,29 @@ Vec3 place_of(const MeshPoint& p, const Mat3& lattice) {
   return p.point + lattice * Vec3{static_cast<double>(o[0]), static_cast<double>(o[1]), static_cast<double>(o[2])};
 }
 
-/// Halves at the surface the segments between two triangles that `wants` names, given the segment and its middle's
-/// foot.
+/// Halves at the surface the segments between two triangles that `wants` names, given the segment and how far its
+/// middle is off.
 template <typename Wants>
 void halve(Triangulation& mesh, const Handle(Geom_Surface) & surface, const Mat3& lattice, const Wants& wants) {
   constexpr int most_passes = 12;  // each halves what is too long
   const Handle(ShapeAnalysis_Surface) analysis = new ShapeAnalysis_Surface(surface);
+  const auto foot = [&](Vec3 p) { return to_vec(analysis->Value(analysis->ValueOfUV(to_pnt(p), 1e-7))); };
+  const auto place = [&](std::uint32_t i) { return place_of(mesh.points[i], lattice); };
   for (int pass = 0; pass < most_passes; ++pass) {
     std::vector<bool> divided(mesh.triangles.size());
     bool any = false;
     for (const auto& [segment, sides] : segments_of(mesh)) {
       if (sides.count != 2) continue;
-      const Vec3 middle =
-          0.5 * (place_of(mesh.points[segment[0]], lattice) + place_of(mesh.points[segment[1]], lattice));
-      const Vec3 foot = to_vec(analysis->Value(analysis->ValueOfUV(to_pnt(middle), 1e-7)));
-      if (!wants(segment, norm(foot - middle))) continue;
+      const Vec3 middle = 0.5 * (place(segment[0]) + place(segment[1]));
+      if (!wants(segment, norm(foot(middle) - middle))) continue;
       any = true;
       if (divided[sides.triangle[0]] || divided[sides.triangle[1]]) continue;  // in the next pass
+      // A little towards the corners beside it: on a round border the middle's foot can be one of them.
+      Vec3 beside = -2.0 * (place(segment[0]) + place(segment[1]));
+      for (const std::size_t t : sides.triangle)
+        for (const std::uint32_t corner : mesh.triangles[t]) beside += place(corner);
       const auto fresh = static_cast<std::uint32_t>(mesh.points.size());
-      mesh.points.push_back({.point = foot});
+      mesh.points.push_back({.point = foot(0.75 * middle + 0.125 * beside)});
       for (const std::size_t t : sides.triangle) {
         divided[t] = true;
         std::array<std::uint32_t, 3> half = mesh.triangles[t];

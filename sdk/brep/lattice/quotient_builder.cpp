@@ -276,7 +276,7 @@ std::optional<std::vector<TopoDS_Shape>> kind_solids(const CellShape& cell, cons
   }
   std::vector<DiagnosticSink> sinks(kinds.size());
   const bool done = in_parallel(kinds.size(), run, [&](std::size_t worker, std::size_t k) {
-    const auto solid = solid_in_box(cells[worker], reach, kinds[k], sinks[k]);
+    const auto solid = solid_in_box(cells[worker], reach, kinds[k], run, sinks[k]);
     if (solid) solids[k] = *solid;
     return solid.has_value();
   });

@@ -22,6 +22,7 @@
 #include <vector>
 
 #include "meso/base/diagnostic.hpp"
+#include "meso/base/run_options.hpp"
 #include "meso/base/vec.hpp"
 #include "meso/brep/body.hpp"
 
@@ -59,6 +60,7 @@ struct MeshFineness {
 
 struct LatticeOptions {
   std::optional<MeshFineness> mesh{};
+  RunOptions run{};
 };
 
 [[nodiscard]] std::optional<Body> lattice_body(const LatticeCell& cell, const LatticeSet& set,
