@@ -13,6 +13,7 @@
 #ifdef MESO_CLI_BREP
 #include "make_options.hpp"
 #include "meso/operations/estimate.hpp"
+#include "meso/operations/macrostructure_distance.hpp"
 #endif
 
 namespace meso::cli {
@@ -48,6 +49,9 @@ Json contents(const Document& d) {
 bool add_values(Json& report, const CheckedDocument& checked, const RunOptions& options, Run& run) {
   eval::EvaluateOptions evaluate{.run = options};
   if (!parse_overrides(run, evaluate.overrides)) return false;
+#ifdef MESO_CLI_BREP
+  evaluate.distance = operations::macrostructure_distance(evaluate.overrides, options);
+#endif
   const auto evaluation = eval::Evaluation::make(checked, evaluate, run.sink);
   if (!evaluation) return false;
   for (const Parameter& p : checked.document().parameters)

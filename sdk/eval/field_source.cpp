@@ -229,8 +229,13 @@ bool FieldSource::at_point(Vec3 global, std::span<const QuantitySlot> wanted, st
   if (wall_) {
     const MacrostructureDistance::Answer answer = wall_->at(millimeters_ * global);
     const double values[] = {answer.distance / millimeters_, answer.normal.x, answer.normal.y, answer.normal.z,
-                             answer.curvature * millimeters_};
-    for (const QuantitySlot& w : wanted) slots[w.slot] = values[w.quantity.which];
+                             answer.curvature.value_or(0) * millimeters_};
+    for (const QuantitySlot& w : wanted) {
+      slots[w.slot] = values[w.quantity.which];
+      if (w.quantity.which < 4 || answer.curvature) continue;
+      report(Code::field_not_realised, where, {field_->id.text, "the curvature of a macrostructure"});
+      return false;
+    }
     return true;
   }
   Origin origin;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// R-6.5a: which records a scatter visits, and in which order.
+// which records a scatter visits, and in which order.
 #include <algorithm>
 #include <cmath>
 

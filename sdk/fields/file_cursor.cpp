@@ -76,7 +76,8 @@ bool FileCursor::count(std::int64_t& value, std::int64_t largest) {
 }
 
 bool FileCursor::expected(std::string what) {
-  if (last_ >= bytes_.size()) {
+  const bool is_cut = last_ > 0 && bytes_.find('\n', last_) == std::string_view::npos;
+  if (last_ >= bytes_.size() || is_cut) {
     sink_.report({.code = Code::field_file_truncated, .where = here(), .args = {"where " + what + " should be"}});
     return false;
   }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "meso/operations/macrostructure_distance.hpp"
 #include "meso/validate/validate.hpp"
 #include "meso/xml/read.hpp"
 #include "stopwatch.hpp"
@@ -78,7 +79,11 @@ std::optional<Prepared> prepare(const fs::path& document, const MakeOptions& opt
   const auto checked = open(document, sink);
   if (!checked) return std::nullopt;
   const double read = watch.lap();
-  auto evaluation = eval::Evaluation::make(*checked, {.overrides = options.overrides, .run = options.run}, sink);
+  auto evaluation = eval::Evaluation::make(*checked,
+                                           {.overrides = options.overrides,
+                                            .run = options.run,
+                                            .distance = macrostructure_distance(options.overrides, options.run)},
+                                           sink);
   if (!evaluation) return std::nullopt;
   const auto fineness = mesh_fineness(*evaluation, options, sink);
   if (!fineness) return std::nullopt;

@@ -35,11 +35,11 @@ struct Override {
 class MacrostructureDistance {
  public:
   /// Millimetres, negative inside; the outward unit normal of the nearest point; the mean curvature there, positive
-  /// where the body bulges.
+  /// where the body bulges, if it is known.
   struct Answer {
     double distance = 0;
     Vec3 normal;
-    double curvature = 0;
+    std::optional<double> curvature{};
   };
   virtual ~MacrostructureDistance() = default;
   [[nodiscard]] virtual Answer at(Vec3 p_mm) const = 0;
