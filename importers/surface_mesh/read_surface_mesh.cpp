@@ -43,7 +43,9 @@ Reader reader_of(std::string_view bytes, const std::string& file) {
   return nullptr;
 }
 
-std::optional<std::string> contents(const std::filesystem::path& file, DiagnosticSink& sink) {
+/// Read, not sized: a pipe or a device has no size, and may never end.
+std::optional<std::string> contents(const std::filesystem::path& file, const RunOptions& run, DiagnosticSink& sink) {
+  const std::uint64_t most = run.max_memory_bytes / 4;
   const auto fail = [&]() -> std::nullopt_t {
     sink.report({.code = Code::file_not_found, .args = {file.string(), std::strerror(errno)}});
     return std::nullopt;
@@ -54,10 +56,22 @@ std::optional<std::string> contents(const std::filesystem::path& file, Diagnosti
   std::size_t size = 0;
   do {
     constexpr std::size_t block = 1 << 20;
-    bytes.resize(std::max(2 * size, block));
+    if (size == bytes.size()) bytes.resize(std::max(2 * size, block));
     errno = 0;
-    size += std::fread(bytes.data() + size, 1, bytes.size() - size, stream.get());
-  } while (size == bytes.size());
+    const std::size_t wanted = std::min(bytes.size() - size, 64 * block);
+    const std::size_t read = std::fread(bytes.data() + size, 1, wanted, stream.get());
+    size += read;
+    if (size > most) {
+      sink.report(
+          {.code = Code::file_too_large, .args = {file.string(), std::to_string(size) + "+", std::to_string(most)}});
+      return std::nullopt;
+    }
+    if (run.should_stop()) {
+      sink.report({.code = run.out_of_time() ? Code::limit_time : Code::cancelled});
+      return std::nullopt;
+    }
+    if (read < wanted) break;
+  } while (true);
   if (std::ferror(stream.get()) != 0) return fail();
   bytes.resize(size);
   return bytes;
@@ -80,8 +94,9 @@ std::optional<TriangleMesh> read_surface_mesh(std::string_view bytes, const std:
   return mesh;
 }
 
-std::optional<TriangleMesh> read_surface_mesh_file(const std::filesystem::path& file, DiagnosticSink& sink) {
-  const std::optional<std::string> bytes = contents(file, sink);
+std::optional<TriangleMesh> read_surface_mesh_file(const std::filesystem::path& file, DiagnosticSink& sink,
+                                                   const RunOptions& run) {
+  const std::optional<std::string> bytes = contents(file, run, sink);
   if (!bytes) return {};
   return read_surface_mesh(*bytes, file.string(), sink);
 }

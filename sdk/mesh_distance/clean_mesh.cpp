@@ -143,7 +143,12 @@ Sums gather(std::vector<Triangle>& out, const std::vector<Placed>& order, const 
         for (std::size_t i = range.begin(); i != range.end(); ++i) {
           if (i + 2 * prefetch_distance < order.size())
             __builtin_prefetch(mesh.triangles.data() + order[i + 2 * prefetch_distance].triangle());
-          if (i + prefetch_distance < order.size()) prefetch_points(mesh, order[i + prefetch_distance].triangle());
+          if (i + prefetch_distance < order.size()) {
+            for (const std::uint32_t p : mesh.triangles[order[i + prefetch_distance].triangle()]) {
+              __builtin_prefetch(mesh.points.data() + p);
+              __builtin_prefetch(keys.data() + p);
+            }
+          }
           std::array<std::uint32_t, 3> corners = mesh.triangles[order[i].triangle()];
           if (!turned.empty() && turned[i]) std::swap(corners[1], corners[2]);
           Triangle& t = out[i];
@@ -190,7 +195,7 @@ std::optional<CleanMesh> clean_mesh(const TriangleMesh& mesh, const std::string&
   }
   const Box3 points_box = box_of(mesh.points);
   const Vec3 middle = 0.5 * points_box.min + 0.5 * points_box.max;
-  std::vector<Placed> order = spatial_order(mesh, points_box);
+  std::vector<Placed> order = spatial_order(mesh, points_box, stop);
   if (stop()) return {};
   const std::vector<std::uint64_t> keys = keys_of(mesh.points);
   CleanMesh out;

@@ -12,8 +12,29 @@
 namespace meso::implicit {
 namespace {
 
-/// The triangles themselves 72, boxes and nodes while the tree grows about 80, or the edges of a mesh to mend.
-constexpr std::uint64_t bytes_per_triangle = 220;
+/// The triangles themselves 72, boxes and nodes while the tree grows about 90, or the edges of a mesh to mend; and 24
+/// of the mesh that is read.
+constexpr std::uint64_t bytes_per_triangle = 240;
+
+std::string mebibytes(std::uint64_t bytes) { return std::to_string((bytes + (std::uint64_t{1} << 20) - 1) >> 20); }
+
+/// Parts that overlap, or shells within a body that do not face its inside.
+void find_buried(const TriangleTree& tree, MeshQuality& quality) {
+  constexpr std::size_t most = 2000;
+  const std::span<const Triangle> triangles = tree.triangles();
+  const std::size_t step = (triangles.size() + most - 1) / most;
+  for (std::size_t t = 0; quality.closed && t < triangles.size(); t += step) {
+    const auto& [a, b, c] = triangles[t];
+    const Vec3 normal = cross(b - a, c - a), middle = (a + b + c) / 3;
+    const double size = std::sqrt(norm(normal));
+    if (!(size > 0)) continue;
+    const Vec3 beside = (1e-6 * size / norm(normal)) * normal;
+    const Winding front = tree.winding(middle + beside), back = tree.winding(middle - beside);
+    ++quality.looked_at;
+    const bool off_surface = !front.on_surface && !back.on_surface;
+    if (off_surface && front.number != 0 && back.number != 0) ++quality.buried;
+  }
+}
 
 void report_stop(const RunOptions& options, const std::string& name, DiagnosticSink& sink) {
   sink.report({.code = options.out_of_time() ? Code::limit_time : Code::cancelled, .where = {.file = name}});
@@ -25,8 +46,10 @@ std::shared_ptr<const MeshField> MeshField::make(const TriangleMesh& mesh, const
                                                  const RunOptions& options, DiagnosticSink& sink) {
   if (mesh.triangles.size() >
       std::min<std::uint64_t>(options.max_memory_bytes / bytes_per_triangle, Placed::most_triangles)) {
-    const std::uint64_t mib = mesh.triangles.size() * bytes_per_triangle >> 20;
-    sink.report({.code = Code::limit_memory, .where = {.file = name}, .args = {std::to_string(mib) + " MiB"}});
+    sink.report({.code = Code::mesh_memory,
+                 .where = {.file = name},
+                 .args = {std::to_string(mesh.triangles.size()), mebibytes(mesh.triangles.size() * bytes_per_triangle),
+                          mebibytes(options.max_memory_bytes)}});
     return {};
   }
   StopPoll stop(options);
@@ -35,10 +58,17 @@ std::shared_ptr<const MeshField> MeshField::make(const TriangleMesh& mesh, const
     std::optional<CleanMesh> clean = clean_mesh(mesh, name, stop, sink);
     if (!clean) return;
     TriangleTree tree(std::move(clean->triangles), clean->box, stop);
-    if (!stop.stopped()) made = std::make_shared<SignedMesh>(std::move(tree), clean->quality);
+    if (stop.stopped()) return;
+    find_buried(tree, clean->quality);
+    made = std::make_shared<SignedMesh>(std::move(tree), clean->quality);
   });
   if (stop.stopped()) report_stop(options, name, sink);
   if (!made) return {};
+  if (const MeshQuality& q = made->quality(); q.buried > 0) {
+    sink.report({.code = Code::mesh_overlaps,
+                 .where = {.file = name},
+                 .args = {std::to_string(q.buried), std::to_string(q.looked_at)}});
+  }
   return std::shared_ptr<const MeshField>(new MeshField(std::move(made)));
 }
 
@@ -73,6 +103,17 @@ Box3 MeshField::bounds(double level) const {
   }
   const bool empty = box.min.x > box.max.x || box.min.y > box.max.y || box.min.z > box.max.z;
   return empty ? Box3{} : box;
+}
+
+std::uint64_t MeshField::bytes() const { return mesh_->bytes(); }
+
+std::uint64_t MeshField::prepared_bytes(const Grid& grid) const {
+  // Where rows begin, four crossings in each, found and then sorted; blocks near the surface.
+  const std::uint64_t rows = std::uint64_t(grid.nodes[1]) * std::uint64_t(grid.nodes[2]);
+  std::uint64_t bytes = rows * (8 + 4 * 24) + grid.node_count() / 64;
+  // Triangles that are turned for the other two axes, and two bits a node.
+  if (!quality().closed) bytes += mesh_->tree().triangles().size_bytes() + grid.node_count() / 4;
+  return bytes;
 }
 
 std::unique_ptr<ExternalField::Prepared> MeshField::prepare(const Grid& grid, const Affine& field_from_grid,

@@ -112,14 +112,82 @@ TEST(MeshField, SpikesHoldNoIslands) {
 TEST(MeshField, OverlapsShellsAndDoubledSurfaces) {
   const TriangleMesh ball = icosphere(2), apart = moved(ball, Affine::from_translation({0.7, 0.1, 0.2}));
   const TriangleMesh small = moved(ball, {{{0.5, 0, 0, 0, 0.5, 0, 0, 0, 0.5}}, {0.1, 0, 0}});
-  expect_right(*field_of(together(ball, apart)), together(ball, apart), 0.5, 1000, 11);
+  expect_right(*make(together(ball, apart)).field, together(ball, apart), 0.5, 1000, 11);
   const TriangleMesh hollow = together(ball, inverted(small));
   expect_right(*field_of(hollow), hollow, 0.5, 1000, 12);
   EXPECT_GT(field_of(hollow)->value({0.1, 0, 0}), 0.4);
-  const TriangleMesh nested = together(ball, small);
-  EXPECT_LT(field_of(nested)->value({0.1, 0, 0}), 0);
+  const Made nested = make(together(ball, small));
+  EXPECT_LT(nested.field->value({0.1, 0, 0}), 0);
+  EXPECT_EQ(nested.told, std::vector{Code::mesh_overlaps});
   const TriangleMesh twice = together(ball, ball);
   expect_right(*field_of(twice), twice, 0.5, 1000, 13);
+}
+
+TEST(MeshField, BuriedWallsAreToldAndNeitherSurfaceNorOutside) {
+  const TriangleMesh ball = icosphere(3), other = moved(ball, Affine::from_translation({0.9, 0.1, 0.2}));
+  const auto one = field_of(ball), two = field_of(other);
+  const Made made = make(together(ball, other));
+  EXPECT_EQ(made.told, std::vector{Code::mesh_overlaps});
+  EXPECT_GT(made.field->quality().buried, made.field->quality().looked_at / 10);
+  Random random(24);
+  int buried = 0;
+  for (int n = 0; n < 5000; ++n) {
+    const Vec3 p = random.in_cube(2);
+    const double a = one->value(p), b = two->value(p), f = made.field->value(p);
+    // Outside, and so for every offset that grows it, it is the body that both are together.
+    if (std::min(a, b) > 0) {
+      ASSERT_EQ(f, std::min(a, b));
+    }
+    // Inside, it is inside; as deep as the nearest wall is far, which is not as deep as the body.
+    if (std::min(a, b) < 0) {
+      ASSERT_EQ(f, -std::min(std::abs(a), std::abs(b)));
+      buried += f > std::min(a, b) + 1e-3 ? 1 : 0;
+    }
+  }
+  EXPECT_GT(buried, 100);
+}
+
+TEST(MeshField, BodiesThatTouchInEdgesAndCorners) {
+  const Vec3 low{-1, -1, -1}, high{0, 0, 0};
+  for (const Vec3 shift : {Vec3{1, 1, 0}, Vec3{1, 1, 1}, Vec3{1, 1, 0.5}}) {
+    const TriangleMesh a = box_mesh(low, high);
+    const auto field = field_of(together(a, moved(a, Affine::from_translation(shift))));
+    Random random(25);
+    for (int n = 0; n < 3000; ++n) {
+      const Vec3 p = n % 3 == 0 ? std::exp(random.in(-20, 0)) * random.in_cube(1) : random.in_cube(1.5);
+      const double exact = std::min(box_distance(low, high, p), box_distance(low + shift, high + shift, p));
+      ASSERT_NEAR(field->value(p), exact, 1e-15);
+      ASSERT_EQ(field->value(p) < 0, exact < 0);
+    }
+  }
+  // Corners on faces and edges of another body, as T-shapes have them.
+  const TriangleMesh post = box_mesh({-0.75, -0.75, 0}, {-0.25, -0.25, 2});
+  const Made standing = make(together(box_mesh(low, high), post));
+  EXPECT_EQ(standing.told, std::vector{Code::mesh_overlaps});  // where it stands there is a wall between them
+  const auto& field = standing.field;
+  EXPECT_LT(field->value({-0.5, -0.5, 1}), -0.2);
+  EXPECT_LT(field->value({-0.5, -0.5, 0}), 0);
+  EXPECT_LT(field->value({-0.5, -0.5, -0.5}), -0.2);
+  EXPECT_NEAR(field->value({-0.5, 0.25, 1}), 0.5, 1e-15);
+}
+
+TEST(MeshField, SurfacesThatCrossThemselves) {
+  // A bow tie as a prism: it goes round one half and, the other way, round the other.
+  TriangleMesh bow;
+  for (const double z : {-0.5, 0.5})
+    for (const Vec3 p : {Vec3{-1, -1, z}, Vec3{1, 1, z}, Vec3{1, -1, z}, Vec3{-1, 1, z}}) bow.points.push_back(p);
+  for (std::uint32_t i = 0; i < 4; ++i) {
+    const std::uint32_t j = (i + 1) % 4;
+    bow.triangles.insert(bow.triangles.end(), {{i, j, j + 4}, {i, j + 4, i + 4}});
+  }
+  bow.triangles.insert(bow.triangles.end(), {{0, 2, 1}, {0, 3, 2}, {4, 5, 6}, {4, 6, 7}});
+  DiagnosticSink sink;
+  const auto field = MeshField::make(bow, "bow", {}, sink);
+  ASSERT_TRUE(field && field->quality().closed);
+  expect_right(*field, bow, 1, 2000, 26);
+  // Parts that face different ways are both bodies.
+  const TriangleMesh ball = icosphere(2), away = moved(inverted(ball), Affine::from_translation({3, 0, 0}));
+  expect_right(*make(together(ball, away)).field, together(ball, away), 0.5, 1000, 27);
 }
 
 TEST(MeshField, InsideOutIsTurnedAndTold) {
@@ -226,7 +294,7 @@ TEST(MeshField, FarFromTheOriginAndSmall) {
 
 TEST(MeshField, GradientHasNormOneAndTheFieldIsLipschitz) {
   const TriangleMesh mesh = together(icosphere(3), moved(spiky_saddle(12), Affine::from_translation({0.5, 0.9, 0})));
-  const auto field = field_of(mesh);
+  const auto field = make(mesh).field;
   EXPECT_EQ(field->lipschitz(), 1);
   Random random(22);
   int off_axis = 0;
@@ -275,7 +343,7 @@ TEST(MeshField, RefusesWhatIsNoMesh) {
   TriangleMesh mesh = icosphere(0);
   mesh.points[3].y = NAN;
   EXPECT_EQ(make(mesh).told, std::vector{Code::mesh_coordinates});
-  EXPECT_EQ(make(icosphere(2), {.max_memory_bytes = 10'000}).told, std::vector{Code::limit_memory});
+  EXPECT_EQ(make(icosphere(2), {.max_memory_bytes = 10'000}).told, std::vector{Code::mesh_memory});
   EXPECT_EQ(make(icosphere(2), {.cancelled = [] { return true; }}).told, std::vector{Code::cancelled});
   EXPECT_EQ(make(icosphere(2), {.deadline = std::chrono::steady_clock::now()}).told, std::vector{Code::limit_time});
 }

@@ -85,13 +85,31 @@ struct Shared {
     const std::span<const Triangle> triangles = alignment.in_field() ? mesh->tree().triangles() : moved;
     signs.emplace(triangles, alignment.ticks(), stop);
     if (stop()) return;
-    if (!mesh->quality().closed) {
+    if (mesh->quality().closed) {
+      if (alignment.in_field()) drop_buried_touches(stop);
+    } else {
       const auto is_inside = [this](auto i, auto j, auto k) {
         return mesh->is_inside_open(point(alignment.flipped(0, i), alignment.flipped(1, j), alignment.flipped(2, k)));
       };
       decide_by_winding_number(*signs, triangles, alignment.ticks(), is_inside, stop);
     }
     if (band > 0 && band < HUGE_VAL) near.emplace(*mesh, grid, field_from_grid, band, stop);
+  }
+  /// Nodes on a wall that is buried have the row's number on both sides of it.
+  void drop_buried_touches(StopPoll& stop) {
+    const std::span<const RowSigns::Touch> touches = signs->touches();
+    std::vector<char> keep(touches.size(), 1);
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, touches.size(), 1024), [&](const auto& range) {
+      if (stop()) return;
+      for (std::size_t t = range.begin(); t != range.end(); ++t) {
+        const auto row_length = static_cast<std::uint64_t>(grid.nodes[1]);
+        const auto j = static_cast<std::int32_t>(touches[t].row % row_length);
+        const auto k = static_cast<std::int32_t>(touches[t].row / row_length);
+        const Vec3 p = point(alignment.flipped(0, touches[t].node), alignment.flipped(1, j), alignment.flipped(2, k));
+        keep[t] = mesh->is_buried(p) ? 0 : 1;
+      }
+    });
+    signs->keep_touches(keep);
   }
   [[nodiscard]] Vec3 point(std::int32_t i, std::int32_t j, std::int32_t k) const {
     return without_specks(field_from_grid * grid.node(i, j, k));

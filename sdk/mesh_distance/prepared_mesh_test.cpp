@@ -107,6 +107,40 @@ TEST(PreparedMesh, RowsAreValuesWhereTheMapScalesShiftsAndMirrors) {
   }
 }
 
+TEST(PreparedMesh, WithinTwoCellsRowsAreTheDistanceToTheNearestOfAllTriangles) {
+  const TriangleMesh mesh = spiky_saddle(9);
+  const double two_cells = 2 * grid.spacing(0);
+  const std::vector<double> rows = all_rows(*field_of(mesh), grid, {}, two_cells);
+  std::size_t near = 0;
+  visit_nodes(grid, [&](std::size_t n, Vec3 p) {
+    const double exact = static_cast<double>(slow_distance(mesh, p));
+    if (exact > 1e-12) {
+      ASSERT_EQ(rows[n]<0, solid_angle_winding(mesh, p)> 0.5);
+    }
+    if (exact < two_cells) {
+      ASSERT_NEAR(std::abs(rows[n]), exact, 1e-15);
+    }
+    near += exact < two_cells ? 1 : 0;
+  });
+  EXPECT_GT(near, 800u);
+}
+
+TEST(PreparedMesh, IsNotPreparedForWhoStopped) {
+  const auto field = field_of(icosphere(4));
+  for (const bool open : {false, true}) {
+    TriangleMesh mesh = icosphere(4);
+    if (open) mesh.triangles.resize(mesh.triangles.size() / 2);
+    DiagnosticSink sink;
+    const auto broken = MeshField::make(mesh, "mesh", {}, sink);
+    EXPECT_EQ(broken->prepare(grid, {}, 0.1, {.cancelled = [] { return true; }}), nullptr);
+    int polls = 0;
+    const auto later = broken->prepare(grid, {}, 0.1, {.cancelled = [&] { return ++polls > 2; }});
+    EXPECT_TRUE(polls < 3 || later == nullptr);
+    EXPECT_GT(broken->bytes(), mesh.triangles.size() * 72);
+    EXPECT_GT(broken->prepared_bytes(grid), open ? grid.node_count() / 4 : 0);
+  }
+}
+
 TEST(PreparedMesh, RowsAreValuesUnderAnyMap) {
   const Affine turned{rotation({0.6, 0, 0.8}, 1), {0.1, 0.05, -0.1}};
   const Affine sheared{{{1, 0.3, -0.2, 0.1, -0.8, 0.25, 0, 0.4, 1.1}}, {0, 0.1, 0}};
@@ -136,6 +170,33 @@ TEST(PreparedMesh, NodesOnTheSurfaceAreZeroInEveryBand) {
       });
       EXPECT_EQ(zeros, box ? 17u * 17 * 17 - 15u * 15 * 15 : 4u * 8 * 8 + 2);
     }
+  }
+}
+
+TEST(PreparedMesh, NodesOnBuriedWallsAreInside) {
+  // Walls, edges and corners of two boxes in each other, all of them nodes; and a third that only touches.
+  const std::array<std::pair<Vec3, Vec3>, 3> boxes{
+      {{{-1, -1, -1}, {0.5, 0.5, 0.5}}, {{-0.25, -0.5, -0.25}, {1, 1, 1}}, {{-1, 0.5, -1}, {-0.5, 1, 1}}}};
+  TriangleMesh mesh;
+  for (const auto& [low, high] : boxes) mesh = together(mesh, box_mesh(low, high));
+  const auto field = field_of(mesh);
+  const Grid nodes{.box = {{-1.25, -1.25, -1.25}, {1.25, 1.25, 1.25}}, .nodes = {21, 21, 21}};
+  for (const double band : {0.0, 0.2, HUGE_VAL}) {
+    const std::vector<double> rows = all_rows(*field, nodes, {}, band);
+    int walls = 0;
+    visit_nodes(nodes, [&](std::size_t n, Vec3 p) {
+      double exact = HUGE_VAL, wall = HUGE_VAL;
+      for (const auto& [low, high] : boxes) {
+        exact = std::min(exact, box_distance(low, high, p));
+        wall = std::min(wall, std::abs(box_distance(low, high, p)));
+      }
+      if (exact != 0) {
+        ASSERT_EQ(sign(rows[n]), sign(exact)) << p.x << " " << p.y << " " << p.z;
+      }
+      ASSERT_EQ(sign(rows[n]), sign(field->value(p)));
+      walls += exact < 0 && wall == 0 ? 1 : 0;
+    });
+    EXPECT_GT(walls, 100);
   }
 }
 

@@ -162,6 +162,13 @@ std::span<const RowSigns::Touch> RowSigns::touches(std::size_t row) const {
   return {first, last};
 }
 
+void RowSigns::keep_touches(std::span<const char> marks) {
+  std::size_t kept = 0;
+  for (std::size_t t = 0; t < marks.size(); ++t)
+    if (marks[t] != 0) touches_[kept++] = touches_[t];
+  touches_.resize(kept);
+}
+
 int RowSigns::sign(std::size_t row, std::int32_t node) const {
   if (!touches_.empty() && std::binary_search(touches_.begin(), touches_.end(), Touch{row, node})) return 0;
   const std::span<const Change> row_changes = changes(row);

@@ -58,6 +58,9 @@ class RowSigns {
     return std::span(changes_).subspan(start_[row], start_[row + 1] - start_[row]);
   }
   [[nodiscard]] std::span<const Touch> touches(std::size_t row) const;
+  [[nodiscard]] std::span<const Touch> touches() const { return touches_; }
+  /// Keeps those that are marked. REQUIRES: a mark for each.
+  void keep_touches(std::span<const char> marks);
   /// -1: enclosed, 0: on the surface, 1: outside.
   [[nodiscard]] int sign(std::size_t row, std::int32_t node) const;
 

@@ -21,19 +21,27 @@ std::uint64_t spread(std::uint64_t x) {
   return (x | x << 2) & 0x249249249249u;
 }
 
+/// Three whole numbers side by side, so that one sum adds all of them.
+constexpr unsigned lane_bits = 20;
+constexpr std::uint64_t lane_mask = (1u << lane_bits) - 1;
+
 class Curve {
  public:
   explicit Curve(const Box3& box) : min_(box.min) {
     const Vec3 size = box.max - box.min;
     const double largest = std::max({size.x, size.y, size.z});
-    if (largest > 0) scale_ = ((1u << bits_per_axis) - 1) / largest;
+    // A sum of three corners, without its last two bits, has to fit.
+    if (largest > 0) scale_ = ((1u << bits_per_axis) - 1) * 4 / 3.0 / largest;
   }
-  [[nodiscard]] std::uint64_t place(Vec3 a, Vec3 b, Vec3 c) const {
+  [[nodiscard]] std::uint64_t lanes(Vec3 p) const {
     std::uint64_t out = 0;
-    for (std::size_t i = 0; i < 3; ++i) {
-      const double middle = 0.5 * (std::min({a[i], b[i], c[i]}) + std::max({a[i], b[i], c[i]}));
-      out |= spread(static_cast<std::uint64_t>((middle - min_[i]) * scale_)) << i;
-    }
+    for (unsigned i = 0; i < 3; ++i) out |= static_cast<std::uint64_t>((p[i] - min_[i]) * scale_) << i * lane_bits;
+    return out;
+  }
+  /// Where the middle of a triangle lies, from the sum of its corners' lanes.
+  [[nodiscard]] static std::uint64_t place(std::uint64_t sum) {
+    std::uint64_t out = 0;
+    for (unsigned i = 0; i < 3; ++i) out |= spread((sum >> i * lane_bits & lane_mask) >> 2) << i;
     return out;
   }
 
@@ -52,20 +60,30 @@ void sort_by_digit(const std::vector<Placed>& from, std::vector<Placed>& to, uns
   for (const Placed& p : from) to[next[digit(p)]++] = p;
 }
 
+using Blocks = tbb::blocked_range<std::size_t>;
+constexpr std::size_t grain = 1 << 14;
+
 }  // namespace
 
-std::vector<Placed> spatial_order(const TriangleMesh& mesh, const Box3& box) {
+std::vector<Placed> spatial_order(const TriangleMesh& mesh, const Box3& box, StopPoll& stop) {
   const Curve curve(box);
+  std::vector<std::uint64_t> lanes(mesh.points.size());
+  tbb::parallel_for(Blocks(0, lanes.size(), grain), [&](const Blocks& range) {
+    if (stop()) return;
+    for (std::size_t i = range.begin(); i != range.end(); ++i) lanes[i] = curve.lanes(mesh.points[i]);
+  });
   std::vector<Placed> order(mesh.triangles.size()), other(order.size());
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, order.size(), 1 << 14), [&](const auto& range) {
+  tbb::parallel_for(Blocks(0, order.size(), grain), [&](const Blocks& range) {
+    if (stop()) return;
     for (std::size_t i = range.begin(); i != range.end(); ++i) {
+      // Triangles may refer to points all over the memory.
       if (i + prefetch_distance < order.size())
-        prefetch_points(mesh, static_cast<std::uint32_t>(i + prefetch_distance));
+        for (const std::uint32_t p : mesh.triangles[i + prefetch_distance]) __builtin_prefetch(lanes.data() + p);
       const auto& [a, b, c] = mesh.triangles[i];
-      order[i] = {curve.place(mesh.points[a], mesh.points[b], mesh.points[c]), i};
+      order[i] = {Curve::place(lanes[a] + lanes[b] + lanes[c]), i};
     }
   });
-  for (unsigned d = 0; d < digits; ++d) {
+  for (unsigned d = 0; d < digits && !stop(); ++d) {
     sort_by_digit(order, other, d * digit_bits);
     order.swap(other);
   }

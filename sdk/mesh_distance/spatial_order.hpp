@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "meso/base/triangle_mesh.hpp"
+#include "stop_poll.hpp"
 
 namespace meso::implicit {
 
@@ -23,13 +24,11 @@ class Placed {
   std::uint64_t bits_;
 };
 
-/// Triangles may refer to points all over the memory; this asks for those of a later one in time.
-inline void prefetch_points(const TriangleMesh& mesh, std::uint32_t triangle) {
-  for (const std::uint32_t p : mesh.triangles[triangle]) __builtin_prefetch(mesh.points.data() + p);
-}
-constexpr std::size_t prefetch_distance = 12;
+/// How many triangles ahead to ask the memory for what they refer to.
+constexpr std::size_t prefetch_distance = 16;
 
-/// Sorted by place, equal ones by number. `box` holds all points. REQUIRES: at most most_triangles.
-[[nodiscard]] std::vector<Placed> spatial_order(const TriangleMesh& mesh, const Box3& box);
+/// Sorted by place, equal ones by number. `box` holds all points. Cut short by `stop`,
+/// the order is any. REQUIRES: at most most_triangles.
+[[nodiscard]] std::vector<Placed> spatial_order(const TriangleMesh& mesh, const Box3& box, StopPoll& stop);
 
 }  // namespace meso::implicit

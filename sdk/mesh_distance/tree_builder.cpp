@@ -15,18 +15,6 @@ constexpr std::uint32_t leaf_block = 1 << 14;  // triangles whose leaves are mad
 
 }  // namespace
 
-void TreeBuilder::Box::extend(const Box& b) {
-  for (std::size_t i = 0; i < 3; ++i) {
-    low[i] = std::min(low[i], b.low[i]);
-    high[i] = std::max(high[i], b.high[i]);
-  }
-}
-
-float TreeBuilder::Box::half_area() const {
-  const float x = high[0] - low[0], y = high[1] - low[1], z = high[2] - low[2];
-  return x * y + y * z + z * x;
-}
-
 TreeBuilder::Box TreeBuilder::box_of(const Triangle& t) const {
   Box box;
   for (std::size_t i = 0; i < 3; ++i) {
@@ -80,13 +68,9 @@ TreeBuilder::Box TreeBuilder::box_of(Range leaves) {
 
 /// How many leaves go to the first half; they are moved to the front.
 std::size_t TreeBuilder::part(Range leaves, std::size_t depth) {
-  std::array<float, 3> low{HUGE_VALF, HUGE_VALF, HUGE_VALF}, high{-HUGE_VALF, -HUGE_VALF, -HUGE_VALF};
-  for (const Leaf& leaf : leaves) {
-    for (std::size_t i = 0; i < 3; ++i) {
-      low[i] = std::min(low[i], leaf.middle2(i));
-      high[i] = std::max(high[i], leaf.middle2(i));
-    }
-  }
+  Box middles;
+  for (const Leaf& leaf : leaves) middles.extend({leaf.middle2(), leaf.middle2()});
+  const Lanes low = middles.low, high = middles.high;
   std::size_t axis = 0;
   for (std::size_t i = 1; i < 3; ++i) {
     if (high[i] - low[i] > high[axis] - low[axis]) axis = i;
@@ -95,7 +79,7 @@ std::size_t TreeBuilder::part(Range leaves, std::size_t depth) {
   const float scale = static_cast<float>(bins) / (high[axis] - low[axis]);
   if (depth > max_depth / 2 || !(scale < HUGE_VALF)) return leaves.size() / 2;
   const auto bin_of = [&](const Leaf& leaf) {
-    return std::min(bins - 1, static_cast<std::size_t>((leaf.middle2(axis) - low[axis]) * scale));
+    return std::min(bins - 1, static_cast<std::size_t>((leaf.middle2()[axis] - low[axis]) * scale));
   };
   std::array<Box, most_bins> boxes;
   std::array<std::uint32_t, most_bins> counts{};
@@ -128,6 +112,37 @@ std::size_t TreeBuilder::part(Range leaves, std::size_t depth) {
   return size == 0 || size == leaves.size() ? leaves.size() / 2 : size;
 }
 
+/// Between which planes the triangles of a leaf lie; all of space for other children.
+void TreeBuilder::set_planes(TriangleTree::Node& node, std::size_t slot) const {
+  const std::uint32_t child = node.child[slot];
+  Vec3 normal;
+  std::span<const Triangle> triangles;
+  if ((child & TriangleTree::Node::leaf) != 0) {
+    const std::uint32_t count = ((child & ~TriangleTree::Node::leaf) >> TriangleTree::Node::count_shift) + 1;
+    triangles = triangles_.subspan(child & TriangleTree::Node::first_mask, count);
+    for (const Triangle& t : triangles) normal += cross(unit_ * (t[1] - t[0]), unit_ * (t[2] - t[0]));
+  }
+  const double length = norm(normal);
+  const bool has_planes = length > 1e-30 && length < HUGE_VAL;
+  std::array<float, 3> n{};
+  for (std::size_t axis = 0; axis < 3 && has_planes; ++axis)
+    n[axis] = static_cast<float>((1 - 1e-6) / length * normal[axis]);
+  double low = HUGE_VAL, high = -HUGE_VAL;
+  for (const Triangle& t : triangles) {
+    for (const Vec3& corner : t) {
+      const Vec3 p = unit_ * (corner - middle_);
+      const double along = n[0] * p.x + n[1] * p.y + n[2] * p.z;
+      low = std::min(low, along);
+      high = std::max(high, along);
+    }
+  }
+  constexpr float outward = 2.4e-7f;
+  for (std::size_t axis = 0; axis < 3; ++axis) node.normal[axis][slot] = n[axis];
+  const auto behind = static_cast<float>(low), before = static_cast<float>(high);
+  node.behind[slot] = has_planes ? behind - (outward * std::abs(behind) + 1e-30f) : -HUGE_VALF;
+  node.before[slot] = has_planes ? before + (outward * std::abs(before) + 1e-30f) : HUGE_VALF;
+}
+
 /// A node of n leaves and all below it have numbers from `number` to `number` + n - 1: known before they are built, so
 /// that threads need not wait for each other and numbers do not depend on them.
 void TreeBuilder::build_node(Range leaves, std::size_t number, std::size_t depth) {
@@ -156,9 +171,11 @@ void TreeBuilder::build_node(Range leaves, std::size_t number, std::size_t depth
       node.high[axis][i] = box.high[axis];
     }
     node.child[i] = 0;
+    set_planes(node, i);
     if (i >= count) continue;
     child_number[i] = next;
     node.child[i] = parts[i].size() == 1 ? parts[i][0].child : static_cast<std::uint32_t>(next);
+    set_planes(node, i);
     next += parts[i].size() - 1;
   }
   const auto build_child = [&](std::size_t i) {

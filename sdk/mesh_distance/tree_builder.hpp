@@ -17,15 +17,23 @@ class TreeBuilder {
   [[nodiscard]] std::vector<TriangleTree::Node> build();
 
  private:
+  /// x, y, z, and one lane that means nothing: all at once in a register.
+  using Lanes [[gnu::vector_size(16)]] = float;
   struct Box {
-    std::array<float, 3> low{HUGE_VALF, HUGE_VALF, HUGE_VALF}, high{-HUGE_VALF, -HUGE_VALF, -HUGE_VALF};
-    void extend(const Box& b);
-    [[nodiscard]] float half_area() const;
+    Lanes low{HUGE_VALF, HUGE_VALF, HUGE_VALF, HUGE_VALF}, high{-HUGE_VALF, -HUGE_VALF, -HUGE_VALF, -HUGE_VALF};
+    void extend(const Box& b) {
+      low = b.low < low ? b.low : low;
+      high = b.high > high ? b.high : high;
+    }
+    [[nodiscard]] float half_area() const {
+      const Lanes size = high - low;
+      return size[0] * size[1] + size[1] * size[2] + size[2] * size[0];
+    }
   };
   struct Leaf {
     Box box;
     std::uint32_t child;
-    [[nodiscard]] float middle2(std::size_t axis) const { return box.low[axis] + box.high[axis]; }
+    [[nodiscard]] Lanes middle2() const { return box.low + box.high; }
   };
   using Range = std::span<Leaf>;
 
@@ -33,6 +41,7 @@ class TreeBuilder {
   void make_leaves();
   void make_leaves(std::uint32_t first, std::uint32_t last, std::vector<Leaf>& out) const;
   [[nodiscard]] static Box box_of(Range leaves);
+  void set_planes(TriangleTree::Node& node, std::size_t slot) const;
   [[nodiscard]] static std::size_t part(Range leaves, std::size_t depth);
   void build_node(Range leaves, std::size_t number, std::size_t depth);
   [[nodiscard]] std::uint32_t move_node(std::uint32_t number, std::vector<TriangleTree::Node>& out) const;

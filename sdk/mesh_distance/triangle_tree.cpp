@@ -43,12 +43,14 @@ Float4 larger(Float4 a, Float4 b) { return a > b ? a : b; }
 
 /// Good to 5e-7 of the point's distance from the middle of the mesh.
 std::array<float, 4> squared_distances(const Node& node, const std::array<float, 3>& p) {
-  Float4 sum{};
+  Float4 sum{}, along{};
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const Float4 beside = larger(larger(load(node.low[axis]) - p[axis], p[axis] - load(node.high[axis])), Float4{});
     sum += beside * beside;
+    along += load(node.normal[axis]) * p[axis];
   }
-  return std::bit_cast<std::array<float, 4>>(sum);
+  const Float4 off_planes = larger(larger(load(node.behind) - along, along - load(node.before)), Float4{});
+  return std::bit_cast<std::array<float, 4>>(larger(sum, off_planes * off_planes));
 }
 
 /// For points so far away that floats would not tell one box from another.
@@ -166,6 +168,35 @@ TriangleTree::Nearest TriangleTree::nearest(Vec3 p, std::uint32_t hint, double w
   else
     search(to_floats(q), best);
   return best.nearest();
+}
+
+std::vector<Vec3> TriangleTree::normals_at(Vec3 p) const {
+  constexpr std::size_t most = 8;
+  std::vector<Vec3> normals;
+  const Vec3 q = to_unit(p);
+  const std::array<float, 3> f = to_floats(q);
+  const double slack = 5e-7 * (size_of(q) + 2);
+  Stack<std::uint32_t> stack;
+  stack.push(0);
+  while (!stack.empty() && normals.size() < most) {
+    const std::uint32_t next = stack.pop();
+    if ((next & Node::leaf) != 0) {
+      for (const std::uint32_t t : triangles_of(next)) {
+        const auto& [a, b, c] = triangles_[t];
+        const Vec3 normal = cross(unit_ * (b - a), unit_ * (c - a));
+        if (!(norm(normal) > 0) || !is_on(triangles_[t], p)) continue;
+        const Vec3 unit = normal / norm(normal);
+        const auto is_known = [&](Vec3 n) { return norm(n - unit) < 1e-9; };
+        if (std::none_of(normals.begin(), normals.end(), is_known)) normals.push_back(unit);
+      }
+      continue;
+    }
+    const std::array<float, 4> distances = squared_distances(nodes_[next], f);
+    for (std::size_t i = 0; i < 4; ++i) {
+      if (distances[i] <= slack * slack) stack.push(nodes_[next].child[i]);
+    }
+  }
+  return normals;
 }
 
 Winding TriangleTree::winding(Vec3 p) const {

@@ -32,10 +32,13 @@ class TriangleTree {
   };
 
   /// Four children, so that one visit decides on all of them. A child is a node's number, or `leaf` with a number of
-  /// triangles less one and the first of them.
-  struct Node {
+  /// triangles less one and the first of them. The triangles of a leaf also lie between two planes: where a surface is
+  /// finer than its distance, boxes alone do not tell which of many leaves is the nearest.
+  struct alignas(64) Node {
     static constexpr std::uint32_t leaf = 1u << 31, count_shift = 29, first_mask = (1u << count_shift) - 1;
-    std::array<std::array<float, 4>, 3> low, high;  // an empty slot has low > high
+    std::array<std::array<float, 4>, 3> low, high;  ///< an empty slot has low > high
+    std::array<std::array<float, 4>, 3> normal;     ///< of the planes, not longer than 1
+    std::array<float, 4> behind, before;            ///< behind <= dot(normal, x) <= before
     std::array<std::uint32_t, 4> child;
   };
 
@@ -46,10 +49,15 @@ class TriangleTree {
   /// `hint`: a triangle that may be near, to begin with. Triangles farther than `within` may be overlooked.
   [[nodiscard]] Nearest nearest(Vec3 p, std::uint32_t hint = no_triangle, double within = HUGE_VAL) const;
   [[nodiscard]] Winding winding(Vec3 p) const;
+  /// Unit normals of the triangles that p is on, exactly; without repetition, some eight at most.
+  [[nodiscard]] std::vector<Vec3> normals_at(Vec3 p) const;
 
   [[nodiscard]] std::span<const Triangle> triangles() const { return triangles_; }
   [[nodiscard]] std::span<const Node> nodes() const { return nodes_; }
   [[nodiscard]] const Box3& box() const { return box_; }
+  [[nodiscard]] std::uint64_t bytes() const {
+    return triangles_.capacity() * sizeof(Triangle) + nodes_.capacity() * sizeof(Node);
+  }
 
  private:
   class Best;

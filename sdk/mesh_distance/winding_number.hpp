@@ -15,6 +15,7 @@ class WindingNumber {
 
   /// `tree` is the one it was made from.
   [[nodiscard]] double at(const TriangleTree& tree, Vec3 p) const;
+  [[nodiscard]] std::uint64_t bytes() const { return moments_.capacity() * sizeof(Moments); }
 
  private:
   struct Moments {

@@ -47,7 +47,8 @@ std::size_t jobs_of(const RunOptions& run, std::size_t bricks) {
 
 // What is known before the start: planes of samples and signs for each thread, and the record of a surface that every
 // row crosses four times.
-bool memory_fits(const Grid& grid, bool signs_only, const RunOptions& run, DiagnosticSink& diagnostics) {
+bool memory_fits(const Grid& grid, bool signs_only, std::uint64_t held, const RunOptions& run,
+                 DiagnosticSink& diagnostics) {
   const auto nx = static_cast<std::uint64_t>(grid.nodes[0]), ny = static_cast<std::uint64_t>(grid.nodes[1]),
              nz = static_cast<std::uint64_t>(grid.nodes[2]);
   const std::size_t jobs = jobs_of(run, bricks_of(grid));
@@ -55,7 +56,7 @@ bool memory_fits(const Grid& grid, bool signs_only, const RunOptions& run, Diagn
   const std::uint64_t thread = SampleRows::bytes(nx, ny) + (signs_only ? 2 * (brick_planes + 1) : 2) * plane_of_signs;
   const std::uint64_t record = (ny + 1) * (nz + 1) * (sizeof(RowCounts) + 4 * sizeof(std::uint16_t));
   const std::uint64_t shared = (nx + ny + nz) * sizeof(double) + bricks_of(grid) * sizeof(BrickRecord) + record;
-  return fits(grid, jobs * thread + shared,
+  return fits(grid, held + jobs * thread + shared,
               "contouring with " + std::to_string(jobs) + (jobs == 1 ? " thread" : " threads"), run, diagnostics);
 }
 
@@ -251,13 +252,13 @@ std::optional<ContourReport> contour_without_slivers(const GridSource& source, M
 }  // namespace
 
 bool check_grid(const Grid& grid, const RunOptions& run, DiagnosticSink& diagnostics) {
-  return check_nodes(grid, diagnostics) && memory_fits(grid, false, run, diagnostics);
+  return check_nodes(grid, diagnostics) && memory_fits(grid, false, 0, run, diagnostics);
 }
 
 std::optional<ContourReport> contour(const GridSource& source, MeshSink& sink, const ContourOptions& options,
                                      const RunOptions& run, DiagnosticSink& diagnostics) {
   if (!check_nodes(source.grid(), diagnostics)) return std::nullopt;
-  if (!memory_fits(source.grid(), source.signs_only(), run, diagnostics)) return std::nullopt;
+  if (!memory_fits(source.grid(), source.signs_only(), source.bytes(), run, diagnostics)) return std::nullopt;
   const auto start = std::chrono::steady_clock::now();
   auto report = options.collapse_slivers ? contour_without_slivers(source, sink, options, run, diagnostics)
                                          : Contouring(source, sink, options, run, diagnostics).run();

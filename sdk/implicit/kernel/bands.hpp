@@ -12,7 +12,7 @@
 
 namespace meso::implicit {
 
-/// The larger of some lines slope * t + offset, or infinity.
+/// The larger of some lines slope * t + offset, or infinity; and which way the root goes when the external grows.
 class Band {
  public:
   /// Up to which magnitude an external has to be exact so that the root is exact, to the bit, up to the magnitude `t`.
@@ -20,16 +20,20 @@ class Band {
   /// the same, and one beyond stays beyond, with its sign. Infinity: the value matters everywhere. t >= 0.
   [[nodiscard]] double for_root(double t) const;
   [[nodiscard]] bool is_finite() const { return !everywhere_; }
+  /// Where both are false the external is not read. Both: the root may go either way.
+  [[nodiscard]] bool may_rise() const { return rises_; }
+  [[nodiscard]] bool may_fall() const { return falls_; }
 
  private:
   friend std::vector<Band> external_bands(const Graph& graph, Graph::Id root);
   struct Line {
     double slope, offset;
   };
+  enum class Direction : std::uint8_t { same, opposite, either };
   void add(Line line);
-  void add(const Band& band, double factor, double offset);
+  void add(const Band& band, double factor, double offset, Direction direction);
 
-  bool everywhere_ = false;
+  bool everywhere_ = false, rises_ = false, falls_ = false;
   std::vector<Line> lines_;
 };
 

@@ -5,8 +5,11 @@
 #include <cassert>
 #include <cmath>
 #include <optional>
+#include <set>
+#include <string>
 
 #include "bands.hpp"
+#include "fit_floats.hpp"
 #include "plan.hpp"
 #include "point_values.hpp"
 #include "separate.hpp"
@@ -42,6 +45,9 @@ class Source final : public GridSource {
   [[nodiscard]] std::unique_ptr<GridSampler> sampler() const override;
   [[nodiscard]] bool signs_only() const override { return signs_only_; }
 
+  [[nodiscard]] std::uint64_t bytes() const override { return bytes_; }
+  void count(std::uint64_t bytes) { bytes_ = bytes; }
+
   [[nodiscard]] const Plan& plan() const { return plan_; }
   [[nodiscard]] bool prunes() const { return prunes_; }
   [[nodiscard]] PointValues point_values(std::vector<ExternalRows*> externals) const {
@@ -72,6 +78,7 @@ class Source final : public GridSource {
   std::vector<Band> bands_;
   std::vector<std::unique_ptr<ExternalField::Prepared>> externals_;
   bool prunes_, signs_only_ = false;
+  std::uint64_t bytes_ = 0;
 };
 
 class Sampler final : public GridSampler {
@@ -149,15 +156,47 @@ std::unique_ptr<GridSampler> Source::sampler() const { return std::make_unique<S
 
 }  // namespace
 
+namespace {
+
+/// What external fields hold, each once, and take for the grid; and tables, at most.
+std::uint64_t bytes_of(const Graph& graph, const Grid& grid, std::uint64_t tables) {
+  std::set<const ExternalField*> seen;
+  std::uint64_t bytes = tables;
+  for (const ExternalLeaf& leaf : graph.externals()) {
+    if (seen.insert(leaf.field.get()).second) bytes += leaf.field->bytes();
+    bytes += leaf.field->prepared_bytes(grid);
+  }
+  const auto along = static_cast<std::uint64_t>(grid.nodes[0]) + static_cast<std::uint64_t>(grid.nodes[1]) +
+                     static_cast<std::uint64_t>(grid.nodes[2]);
+  return bytes + graph.size() * along * sizeof(double);
+}
+
+std::uint64_t mebibytes(std::uint64_t bytes) { return (bytes + (std::uint64_t{1} << 20) - 1) >> 20; }
+
+}  // namespace
+
 std::unique_ptr<GridSource> compile(const Term& term, const Grid& grid, const CompileOptions& options,
                                     const RunOptions& run, DiagnosticSink& sink) {
   assert(grid.nodes[0] >= 2 && grid.nodes[1] >= 2 && grid.nodes[2] >= 2);
   Graph graph;
   Graph::Id root = graph.from_term(term);
+  CompileOptions within_budget = options;
+  within_budget.max_table_bytes = std::min(options.max_table_bytes, run.max_memory_bytes / 4);
+  const std::uint64_t bytes = bytes_of(graph, grid, 0);
+  if (!graph.externals().empty() && bytes > run.max_memory_bytes) {
+    sink.report({.code = Code::limit_grid_memory,
+                 .args = {std::to_string(grid.node_count()), std::to_string(mebibytes(bytes)), "the meshes in it",
+                          std::to_string(mebibytes(run.max_memory_bytes))}});
+    return nullptr;
+  }
   const std::vector<Band> bands = external_bands(graph, root);
   if (!options.strict_math) root = separate(graph, root, grid);
-  auto source = std::make_unique<Source>(std::move(graph), root, grid, options);
-  if (source->prepare(bands, run)) return source;
+  root = fit_to_floats(graph, root, term, grid);
+  if (!run.should_stop()) {
+    auto source = std::make_unique<Source>(std::move(graph), root, grid, within_budget);
+    source->count(bytes);
+    if (source->prepare(bands, run)) return source;
+  }
   sink.report({.code = run.out_of_time() ? Code::limit_time : Code::cancelled});
   return nullptr;
 }

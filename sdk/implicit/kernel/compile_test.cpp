@@ -110,6 +110,36 @@ TEST(Compile, PruningChangesNothingThatCounts) {
   EXPECT_GT(left_out, fields.size() * 150 * 70 * 41);  // of four times as many: pruning does prune
 }
 
+TEST(Compile, FieldsBeyondFloatsCrossEdgesWhereTheyShould) {
+  const Grid grid{.box = {{-1.3, -1.2, -1.1}, {1.2, 1.4, 1.25}}, .nodes = {70, 31, 20}};
+  const std::string ball = "(x^2 + y^2 + z^2 - 1)";
+  const Samples plain(*compile(term_of(ball), grid, {.pruning = Pruning::off}), 8);
+  for (const std::string factor : {"1e-60", "1e-45", "-1e60", "1e300", "1e-290", "(1e-50*(2 + sin(x)))"}) {
+    for (const Pruning pruning : {Pruning::off, Pruning::on}) {
+      const auto source = compile(term_of(factor + "*" + ball), grid, {.pruning = pruning});
+      const Samples samples(*source, 8);
+      for (std::int32_t k = 0; k < 20; ++k)
+        for (std::int32_t j = 0; j < 31; ++j)
+          for (std::int32_t i = 1; i < 70; ++i) {
+            const float a = plain.value(i - 1, j, k), b = plain.value(i, j, k);
+            if (factor[0] != '-') {
+              ASSERT_EQ(samples.is_inside(i, j, k), plain.is_inside(i, j, k)) << factor;
+            }
+            if (std::min(a, b) >= 0 || std::max(a, b) < 0 || factor[0] == '(') continue;
+            const float c = samples.value(i - 1, j, k), d = samples.value(i, j, k);
+            ASSERT_NEAR(c / (c - d), a / (a - b), 1e-6) << factor;
+          }
+      double at_zero = 1;
+      source->sampler()->values_at(std::vector<Vec3>{{0, 0, 0}}, &at_zero);
+      EXPECT_TRUE(std::abs(at_zero) > 1e-6 && std::abs(at_zero) < 1e6) << factor;
+    }
+  }
+  // A pole does not make the rest small.
+  double beside = 0;
+  compile(term_of("x - 0.1 + exp(400*(y - 1))"), grid)->sampler()->values_at(std::vector<Vec3>{{0.6, 0, 0}}, &beside);
+  EXPECT_EQ(beside, 0.5);
+}
+
 TEST(Compile, ValuesAtNodesHaveTheRowsSigns) {
   const Grid grid{.box = {{-1, -1, -1}, {1, 1.1, 1}}, .nodes = {50, 20, 11}};
   for (const std::string& text : fields) {

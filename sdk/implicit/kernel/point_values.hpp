@@ -3,9 +3,11 @@
 // Values at points, to the bit those of a program that asks every external field exactly; but an external is asked no
 // more exactly than its value counts there.
 //
-// Where a gyroid fills a mesh, the mesh's distance is dear and does not matter: with infinity in its place, of its
-// sign, the program gives some v. That is right if the distance is beyond what a root of |v| needs (bands.hpp), and to
-// know that takes no more than a look around the point. Where it is not beyond, the look has found the distance.
+// Where a gyroid fills a mesh, the mesh's distance is dear and does not matter. Where the program comes to the same
+// with everything from zero to infinity in its place, of its sign, that is the value: two runs show it if the root can
+// go only one way when the distance grows. Elsewhere, with infinity in its place, the program gives some v, which is
+// right if the distance is beyond what a root of |v| needs (bands.hpp); to know that takes no more than a look around
+// the point, and where it is not beyond, the look has found the distance.
 
 #include <span>
 #include <vector>
@@ -31,21 +33,25 @@ class PointValues {
     std::vector<std::vector<double>> externals;
     std::vector<double> root_within;  ///< the root is right up to this magnitude
     std::vector<std::size_t> place;   ///< in what was asked for
-    void clear();
+    void clear(std::size_t count);
+    void add(Vec3 point, std::size_t at, const std::vector<std::vector<double>>& values, std::size_t n);
   };
 
   void block(std::span<const Vec3> points, double* out);
   void ask_signs(std::span<const Vec3> points);
-  void look_around(std::span<const Vec3> points, const double* out);
-  void run(const std::vector<std::vector<double>>& externals, std::span<const Vec3> points, double* out);
+  void decide_by_signs(std::span<const Vec3> points, double* out);
+  void look_around(double* out);
+  void decide_by_distances(double* out);
+  void ask_exactly(double* out);
+  void take_extremes(bool least);
 
   Program program_;
   std::vector<Band> bands_;
   std::vector<ExternalRows*> externals_;
   double reach_;
-  std::vector<std::vector<double>> values_;  ///< by external
-  std::vector<double> within_, found_, root_within_;
-  std::vector<char> changed_;
+  bool bounded_, one_way_;
+  std::vector<std::vector<double>> values_, extremes_;  ///< by external
+  std::vector<double> within_, found_;
   Batch open_, exact_;
 };
 

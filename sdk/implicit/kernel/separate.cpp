@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "scalar_operation.hpp"
+#include "spread_points.hpp"
 
 namespace meso::implicit {
 namespace {
@@ -22,15 +23,7 @@ constexpr double max_relative_error = 1e-12;
 /// Every node's values at a few points of the box.
 class Probe {
  public:
-  Probe(const Graph& graph, const Grid& grid) : graph_(graph) {
-    // An additive recurrence with the powers of the root of t^4 = t + 1: evenly spread for any number of points.
-    constexpr std::array<double, 3> step = {0.8191725133961645, 0.6710436067037893, 0.5497004779019703};
-    for (std::size_t p = 0; p < points_.size(); ++p)
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        const double t = 0.5 + step[axis] * static_cast<double>(p + 1);
-        points_[p][axis] = grid.box.min[axis] + (t - std::floor(t)) * (grid.box.max[axis] - grid.box.min[axis]);
-      }
-  }
+  Probe(const Graph& graph, const Grid& grid) : graph_(graph), points_(spread_points<64>(grid.box)) {}
 
   /// Not finite if a value is not.
   [[nodiscard]] double magnitude(Id id) {

@@ -22,6 +22,7 @@
 #include <string_view>
 
 #include "meso/base/diagnostic.hpp"
+#include "meso/base/run_options.hpp"
 #include "meso/base/triangle_mesh.hpp"
 
 namespace meso {
@@ -29,7 +30,8 @@ namespace meso {
 /// `file` names the bytes in diagnostics, and its extension helps where they are ambiguous.
 [[nodiscard]] std::optional<TriangleMesh> read_surface_mesh(std::string_view bytes, const std::string& file,
                                                             DiagnosticSink& sink);
+/// A file may take a quarter of the memory budget: FILE_TOO_LARGE. LIMIT_TIME, CANCELLED.
 [[nodiscard]] std::optional<TriangleMesh> read_surface_mesh_file(const std::filesystem::path& file,
-                                                                 DiagnosticSink& sink);
+                                                                 DiagnosticSink& sink, const RunOptions& run = {});
 
 }  // namespace meso

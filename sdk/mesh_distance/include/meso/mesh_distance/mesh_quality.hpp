@@ -16,8 +16,11 @@ struct MeshQuality {
   std::uint64_t open_edges = 0;      ///< of one triangle
   std::uint64_t flipped_edges = 0;   ///< of two triangles that disagree
   std::uint64_t multiple_edges = 0;  ///< of more than two, not balanced
-  bool closed = false;               ///< every edge is used as often in one direction as in the other: inside is exact
-  bool inside_out = false;           ///< the enclosed volume is negative; the body is used turned right
+  // Of a closed mesh.
+  std::uint64_t looked_at = 0;  ///< triangles spread over the mesh
+  std::uint64_t buried = 0;     ///< of them, inside on both sides: walls that the distance sees
+  bool closed = false;          ///< every edge is used as often in one direction as in the other: inside is exact
+  bool inside_out = false;      ///< the enclosed volume is negative; the body is used turned right
 };
 
 }  // namespace meso::implicit

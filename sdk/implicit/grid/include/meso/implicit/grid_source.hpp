@@ -53,6 +53,9 @@ class GridSource {
   /// True: a row's values are good for their sign only, and contouring must ask values_at() for both ends of every
   /// edge it crosses. For fields whose values are dear and whose signs are cheap (distance to a mesh).
   [[nodiscard]] virtual bool signs_only() const { return false; }
+
+  /// Memory that it holds: counts against a run's budget.
+  [[nodiscard]] virtual std::uint64_t bytes() const { return 0; }
 };
 
 }  // namespace meso::implicit

@@ -11,6 +11,8 @@
 // value by at most 1e-12 of the range that it has in the box. Samples have equal bits for every instruction set, slab
 // and thread, and pruning changes no sign and no value that counts (GridSampler::row).
 //
+// A field that floats cannot hold (1e-60 * (x^2 + y^2 - 1)) is sampled times a power of two.
+//
 // Compiling costs a few milliseconds and O(n) memory for an n^3 grid; fields with a dear part of x and y alone get
 // tables of n^2 doubles for it, within max_table_bytes. The source keeps its external fields alive.
 
@@ -40,8 +42,8 @@ struct CompileOptions {
 /// Whether this machine has it.
 [[nodiscard]] bool is_supported(InstructionSet set);
 
-/// Empty after LIMIT_TIME or CANCELLED. REQUIRES: a grid of at least two nodes along each axis; an instruction set that
-/// is supported.
+/// Empty after LIMIT_GRID_MEMORY, LIMIT_TIME or CANCELLED. REQUIRES: a grid of at least two nodes along each axis; an
+/// instruction set that is supported.
 [[nodiscard]] std::unique_ptr<GridSource> compile(const Term& term, const Grid& grid, const CompileOptions& options,
                                                   const RunOptions& run, DiagnosticSink& sink);
 /// Without limits: never empty.

@@ -54,7 +54,7 @@ class ExternalField {
   [[nodiscard]] virtual std::unique_ptr<Prepared> prepare(const Grid& grid, const Affine& field_from_grid, double band,
                                                           const RunOptions& run) const = 0;
 
-  /// Memory that it holds, and what prepare() will come to hold on a grid.
+  /// Memory that it holds, and what prepare() takes for a grid: an estimate, on the safe side.
   [[nodiscard]] virtual std::uint64_t bytes() const { return 0; }
   [[nodiscard]] virtual std::uint64_t prepared_bytes(const Grid&) const { return 0; }
 };
