@@ -25,10 +25,13 @@ struct Shared {
       brick += most * grid.spacing(a) / 2 *
                Vec3{std::abs(map.linear(0, a)), std::abs(map.linear(1, a)), std::abs(map.linear(2, a))};
       counts[a] = (grid.nodes[a] + side - 1) / side;
+      inverse_spacing[a] = 1 / grid.spacing(a);
     }
     // Both ends of an edge that the surface crosses are exact, and everything within the band.
-    margin = std::min((std::isfinite(band) ? band : HUGE_VAL) + edge * std::max(1.0, cells->lipschitz()) * (1 + 1e-9),
-                      cells->reach());
+    margin = band + edge * std::max(1.0, cells->lipschitz()) * (1 + 1e-9);
+    is_exact = !(margin < cells->reach());
+    if (is_exact) margin = cells->reach();
+    far = is_exact ? margin : 2 * margin;
     half = brick * (1 + 1e-12);
     radius = norm(half);
     xs.resize(static_cast<std::size_t>(counts[0]) * side);
@@ -42,7 +45,10 @@ struct Shared {
   StrutRow row;
   std::array<std::int32_t, 3> counts{};
   double margin = 0, radius = 0;
-  Vec3 half;               ///< of a brick's box in the field's space
+  double far = 0;         ///< what stands where nothing is near
+  bool is_exact = false;  ///< values count everywhere, deep inside too
+  Vec3 half;              ///< of a brick's box in the field's space
+  Vec3 inverse_spacing;
   std::vector<double> xs;  ///< of nodes, to full bricks
 };
 
@@ -100,11 +106,11 @@ class Layer {
       } else {
         const Interval values = primitive.placed.interval({box.min - displacement, box.max - displacement});
         if (values.lo > shared.margin) return;
-        filled = filled || (values.hi < -shared.margin && !values.undefined);
+        filled = filled || (!shared.is_exact && values.hi < -shared.margin && !values.undefined);
         fields_.push_back(primitive.moved_by(displacement).placed);
       }
     });
-    filled = filled || nearest + shared.radius < -shared.margin;
+    filled = filled || (!shared.is_exact && nearest + shared.radius < -shared.margin);
     if (filled) fields_.resize(brick.field);
     brick.fields = static_cast<std::uint32_t>(fields_.size()) - brick.field;
     brick.capsule = static_cast<std::uint32_t>(capsules_.size());
@@ -173,8 +179,7 @@ class Rows final : public ExternalRows {
         sample(layer, brick, line, s.xs.data() + std::ptrdiff_t{x} * side, to);
         if (!whole) std::copy(to + (i - x * side), to + (end - x * side), out + (i - first));
       } else {
-        const double far = brick.state == Layer::State::inside ? -s.margin : s.margin;
-        std::fill(out + (i - first), out + (end - first), 2 * far);
+        std::fill(out + (i - first), out + (end - first), brick.state == Layer::State::inside ? -s.far : s.far);
       }
       i = end;
     }
@@ -186,7 +191,7 @@ class Rows final : public ExternalRows {
       const Vec3 p = s.field_from_grid * points[n];
       Layer& layer = layer_at(brick_of(points[n], 2));
       const Layer::Brick& brick = layer.brick(s, brick_of(points[n], 0), brick_of(points[n], 1));
-      double least = brick.state == Layer::State::inside ? -2 * s.margin : 2 * s.margin;
+      double least = brick.state == Layer::State::inside ? -s.far : s.far;
       const Capsule* const capsules = layer.capsules(brick);
       for (std::uint32_t c = 0; c < brick.capsules; ++c)
         least = std::min(least, axis_distance(capsules[c], p) - capsules[c].radius);
@@ -204,12 +209,12 @@ class Rows final : public ExternalRows {
     return layer;
   }
   [[nodiscard]] std::int32_t brick_of(Vec3 p, std::size_t axis) const {
-    const double node = std::round((p[axis] - shared_->grid.box.min[axis]) / shared_->grid.spacing(axis));
-    return static_cast<std::int32_t>(std::clamp(node, 0.0, shared_->grid.nodes[axis] - 1.0)) / side;
+    const double node = (p[axis] - shared_->grid.box.min[axis]) * shared_->inverse_spacing[axis] + 0.5;
+    return std::clamp(static_cast<std::int32_t>(node), 0, shared_->grid.nodes[axis] - 1) / side;
   }
 
   void sample(const Layer& layer, const Layer::Brick& brick, const Line& line, const double* x, double* out) {
-    const double most = 2 * shared_->margin;
+    const double most = shared_->far;
     shared_->row(layer.capsules(brick), brick.capsules, line, x, out);
     for (std::int32_t i = 0; i < side; ++i) out[i] = out[i] < most ? out[i] : most;
     for (const PlacedField& field : layer.fields(brick)) {

@@ -2,8 +2,10 @@
 #include "meso/implicit/document_field.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "boundary_rule.hpp"
+#include "fragments.hpp"
 #include "meso/base/unit.hpp"
 #include "meso/eval/bounds.hpp"
 #include "pattern_field.hpp"
@@ -27,7 +29,10 @@ class PartMaker {
       if (!body) return std::nullopt;
     }
     for (const Apply& apply : part.steps) {
+      const Body before = body;
       body = apply.pattern ? with_cells(body, apply) : with_part(body, apply);
+      if (body && before && apply.fragments.value_or(FragmentRule::keep) != FragmentRule::keep)
+        body = without_fragments(*body, *before, part, apply);
       if (!body) return std::nullopt;
     }
     return body;
@@ -89,6 +94,27 @@ class PartMaker {
     // Whole cells stand for themselves.
     if (rule != BoundaryRule::clip && apply.operation == ApplyOperation::intersection) return pattern->field;
     return combined(body, pattern->field, apply.operation);
+  }
+
+  /// a union makes no fragments, nor do whole cells.
+  std::optional<Field> without_fragments(const Field& body, const Field& before, const Part& part, const Apply& apply) {
+    if (apply.operation == ApplyOperation::union_ || apply.boundary.value_or(BoundaryRule::clip) != BoundaryRule::clip)
+      return body;
+    const double smallest = std::min(result_.smallest_feature_mm, shapes_.smallest_feature_mm());
+    const Vec3 size = body.bounds().empty() ? Vec3{1, 1, 1} : body.bounds().max - body.bounds().min;
+    const double spacing = options_.spacing_mm > 0   ? options_.spacing_mm
+                           : std::isfinite(smallest) ? smallest / 5
+                                                     : std::max({size.x, size.y, size.z}) / 100;
+    const auto loose = fragments_of(body, before, spacing, options_.run, report_.sink());
+    if (!loose) return std::nullopt;
+    if (apply.fragments == FragmentRule::error && loose->count > 0) {
+      report_(Code::geometry_fragments, apply.id_in_source, {part.id.text, std::to_string(loose->count)});
+      return std::nullopt;
+    }
+    if (apply.fragments == FragmentRule::error || !loose->pieces) return body;
+    result_.fragments += loose->count;
+    // The pieces' mesh is as far from their surface as samples are from each other, at most.
+    return difference_of(body, loose->pieces->offset(spacing / 2));
   }
 
   std::optional<double> clearance_of(const Apply& apply) {

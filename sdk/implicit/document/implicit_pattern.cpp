@@ -108,6 +108,17 @@ class Maker {
     return std::nullopt;
   }
   Block block_of(const std::vector<Steps>& steps) const;
+  /// Of the cell in the world.
+  double shortest_edge(const eval::PlacedCell& cell, const eval::BoxShape& box) {
+    if (cell.mapping == CellMapping::conformal) {
+      const auto element = element_of(cell);
+      return element ? shortest_edge_of(*element) : HUGE_VAL;
+    }
+    double shortest = HUGE_VAL;
+    for (std::size_t a = 0; a < 3; ++a)
+      shortest = std::min(shortest, box.size[a] * norm(cell.world_from_cell.linear.column(a)));
+    return shortest;
+  }
 
   const eval::CellStream& cells_;
   const Reporter& report_;
@@ -336,7 +347,7 @@ std::optional<PatternField> Maker::make(const KeepCell& keep, const RunOptions& 
   }
   const auto box = box_of(kept_.front().placed());
   if (!box) return std::nullopt;
-  result.smallest_feature_mm = std::min({box->size.x, box->size.y, box->size.z}) / 4;
+  result.smallest_feature_mm = shortest_edge(kept_.front().placed(), *box) / 4;
   if (!field) {
     if (const auto steps = steps_from_first(*box)) field = repeated(*box, *steps);
     if (report_.sink().error_count() > errors) return std::nullopt;

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "affine_map.hpp"
+#include "far_from_mesh.hpp"
 #include "meso/mesh_distance/mesh_field.hpp"
 #include "polygon_term.hpp"
 #include "volume_element.hpp"
@@ -61,6 +62,7 @@ struct ShapeFields::Maker {
     return extrusion(s);
   }
   Result operator()(const eval::VolumeElementShape& s) const {
+    self.see(shortest_edge_of(s));
     const auto field = volume_element(s);
     if (!field) self.report_(Code::conformal_not_inverted, source, {});
     return field;
@@ -101,6 +103,7 @@ std::shared_ptr<const ExternalField> ShapeFields::import(const eval::ImportShape
   std::shared_ptr<const ExternalField> field;
   if (const auto mesh = options_.imports ? options_.imports(shape, report_.sink()) : std::nullopt)
     field = MeshField::make(*mesh, shape.file.string(), options_.run, report_.sink());
+  if (field && field->lipschitz() <= 1) field = std::make_shared<const FarFromMesh>(field);
   imports_.emplace(shape.file, field);
   return field;
 }

@@ -41,6 +41,22 @@ Box3 box_around(const eval::VolumeElementShape& shape) {
 
 }  // namespace
 
+double shortest_edge_of(const eval::VolumeElementShape& shape) {
+  const auto corner = [&](unsigned which) {
+    std::vector<double> q(shape.system->axes().size(), 0);
+    for (std::size_t i = 0; i < 3; ++i) q[shape.axes[i]] = which >> i & 1U ? shape.to[i] : shape.from[i];
+    return shape.system->point(q);
+  };
+  double shortest = HUGE_VAL;
+  for (unsigned axis = 0; axis < 3; ++axis) {
+    double longest = 0;  // at an axis of a turn, one of four is a point
+    for (unsigned which = 0; which < 8; ++which)
+      longest = std::max(longest, norm(corner(which) - corner(which ^ 1U << axis)));
+    if (longest > 0) shortest = std::min(shortest, longest);
+  }
+  return shortest;
+}
+
 std::optional<Field> volume_element(const eval::VolumeElementShape& shape) {
   constexpr double turn = 2 * std::numbers::pi;
   std::array<double, 3> middle{}, half{};
