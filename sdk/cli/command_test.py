@@ -328,13 +328,15 @@ class CommandLanguage(CommandTest):
 
     def test_words_and_flags_mix(self):
         report = json.loads(self.sdf(0, "--jobs 1 ball --json move -1,0,0 -o ball.stl -s 30^3 --no-clobber").stdout)
-        self.assertEqual(sorted(report), sorted("""output volume area solidFraction triangles vertices components closed euler
-                                                   bbox box samples bytes seconds peakBytes diagnostics""".split()))
+        self.assertEqual(sorted(report), sorted("""output volume area solidFraction extrapolated triangles vertices components cavities crumbs
+                                                   closed euler bbox box samples bytes seconds peakBytes diagnostics""".split()))
         self.assertAlmostEqual(report["volume"], 4.18879, delta=0.05)
         self.assertEqual((report["components"], report["euler"], report["closed"], report["samples"]), (1, 2, True, [30] * 3))
         self.assertEqual(report["bytes"], (self.folder / "ball.stl").stat().st_size)
         self.sdf(7, "ball -o ball.stl --no-clobber", says="WRITE_EXISTS")
-        self.assertIn(b"intersection", self.sdf(0, "-h").stdout)
+        help = self.sdf(0, "-h").stdout
+        for said in (b"intersection", b"tpms.gyroid", b"tpms.slotted-p"):
+            self.assertIn(said, help)
         self.sdf(0, "ball --version")
         self.sdf(0, "ball -s 20^3")
         self.assertTrue((self.folder / "out.ply").exists())
@@ -352,8 +354,38 @@ class CommandLanguage(CommandTest):
             with self.subTest(words=words):
                 self.sdf(code, words, says=says)
         self.assertFalse(any(self.folder.glob("a.*")) or any(self.folder.glob("out*")))
-        failed = json.loads(self.sdf(2, "ball bxo --json").stdout)
-        self.assertEqual(failed["diagnostics"][0]["code"], "SDF_UNKNOWN_WORD")
+
+    def test_json_is_one_object_however_a_run_ends(self):
+        for code, name, words in ((2, "SDF_UNKNOWN_WORD", "ball bxo --json"), (2, "USAGE", "ball --json --jobs many"),
+                                  (2, "USAGE", "ball --json --max-memory 3X"), (2, "SDF_EXTENSION", "ball --json -o a.step"),
+                                  (3, "FILE_NOT_FOUND", "--json file none.ply"), (6, "LIMIT_GRID", "ball -s 1e30 --json"),
+                                  (6, "LIMIT_GRID_MEMORY", "ball -s 30000,30000,30000 --max-memory 64M --json"),
+                                  (6, "LIMIT_TIME", "tpms.gyroid -s 3000,3000,3000 --timeout 0.2 --json"),
+                                  (7, "WRITE_FAILED", "ball -o none/a.ply --json")):
+            with self.subTest(words=words):
+                failed = json.loads(self.sdf(code, words, says=name).stdout)
+                self.assertEqual((failed["error"]["code"], failed["error"]["exitCode"]), (name, code))
+                self.assertTrue(failed["error"]["message"] and failed["error"]["number"])
+        self.assertNotIn("error", json.loads(self.sdf(0, "ball -s 20^3 --json").stdout))
+
+    def test_words_that_never_come(self):
+        os.mkfifo(self.folder / "silent")
+        keep_open = os.open(self.folder / "silent", os.O_RDWR)
+        failed = json.loads(self.sdf(6, "@silent --timeout 0.5 --json", says="LIMIT_TIME").stdout)
+        os.close(keep_open)
+        self.assertEqual(failed["error"]["code"], "LIMIT_TIME")
+
+    def test_a_lost_terminal_and_a_file_size_limit_leave_nothing(self):
+        job = subprocess.Popen([MESO, "sdf", "tpms.gyroid", "-s", "2000,2000,2000", "-o", "a.ply", "--json"], cwd=self.folder,
+                               stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+        while job.poll() is None and not any(self.folder.glob(".a.ply*")):
+            time.sleep(0.01)
+        job.send_signal(signal.SIGHUP)
+        told, _ = job.communicate(timeout=30)
+        self.assertEqual((job.returncode, json.loads(told)["error"]["code"]), (130, "CANCELLED"))
+        limited = subprocess.run(["bash", "-c", f"ulimit -f 64; exec {MESO} sdf tpms.gyroid -o a.ply"], cwd=self.folder, capture_output=True)
+        self.assertEqual(limited.returncode, 7, limited.stderr)
+        self.assertEqual(list(self.folder.glob("*a.ply*")), [])
 
     def test_an_empty_solid_is_a_warning(self):
         report = json.loads(self.sdf(0, "tpms.gyroid offset -9 --json", says="SDF_EMPTY").stdout)

@@ -58,7 +58,7 @@ int run_verb(meso::cli::Run& run) {
   } catch (const std::exception& e) {
     run.sink.report({.code = meso::Code::internal, .args = {e.what()}});
   }
-  return run.finish();
+  return run.finish(meso::cli::Json::object());
 }
 
 }  // namespace

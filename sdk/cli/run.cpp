@@ -87,6 +87,7 @@ void add_limit_flags(CLI::App& verb, Flags& flags) {
 }
 
 RunOptions Run::options() {
+  if (flags.json) answer_stop_in_json();
   RunOptions out;
   out.jobs = flags.jobs;
   out.max_cells = flags.max_cells;
@@ -127,18 +128,27 @@ void Run::print_diagnostics() {
   if (sink.truncated()) fmt::print(stderr, "... and more: {} errors in all\n", sink.error_count());
 }
 
-int Run::finish() {
-  print_diagnostics();
+const Diagnostic* Run::first_error() const {
   const auto& all = sink.diagnostics();
   const auto first =
       std::find_if(all.begin(), all.end(), [](const Diagnostic& d) { return severity(d) == Severity::error; });
-  return first == all.end() ? 0 : info(first->code).exit_code;
+  return first == all.end() ? nullptr : &*first;
+}
+
+int Run::finish() {
+  print_diagnostics();
+  const Diagnostic* error = first_error();
+  return error == nullptr ? 0 : info(error->code).exit_code;
 }
 
 int Run::finish(Json report) {
+  if (const Diagnostic* error = first_error()) report["error"] = error_json(*error);
   report["diagnostics"] = diagnostics_json(sink);
   const int code = finish();
-  if (flags.json) fmt::print("{}\n", report.dump(2, ' ', false, Json::error_handler_t::replace));
+  if (flags.json && claim_answer()) {
+    fmt::print("{}\n", report.dump(2, ' ', false, Json::error_handler_t::replace));
+    std::fflush(stdout);
+  }
   return code;
 }
 
@@ -174,6 +184,15 @@ std::optional<double> Run::angle_rad(const std::string& text, const char* flag) 
 Json diagnostics_json(const DiagnosticSink& sink) {
   Json out = Json::array();
   for (const Diagnostic& d : sink.diagnostics()) out.push_back(span_json(d));
+  return out;
+}
+
+Json error_json(const Diagnostic& error) {
+  Json out;
+  out["code"] = info(error.code).name;
+  out["number"] = info(error.code).number;
+  out["exitCode"] = info(error.code).exit_code;
+  out["message"] = message(error);
   return out;
 }
 

@@ -70,7 +70,8 @@ class Run {
   [[nodiscard]] std::optional<CheckedDocument> open(const std::string& file);
   /// Prints what was collected to stderr and returns the exit code of the first error, else 0.
   int finish();
-  /// The same with `report` (one object; "diagnostics" is added) on stdout if --json was given.
+  /// The same with `report` (one object; "error" if there is one, and "diagnostics" are added) on stdout if --json was
+  /// given.
   int finish(Json report);
   /// A length or angle of the command line such as 0.1mm or 20deg: millimetres or radians. Reports a usage error and
   /// gives nothing if it is none.
@@ -80,12 +81,15 @@ class Run {
   [[nodiscard]] std::optional<double> angle_rad(const std::string& text, const char* flag);
 
  private:
+  [[nodiscard]] const Diagnostic* first_error() const;
   void print_diagnostics();
   [[nodiscard]] std::optional<double> positive_value(const std::string& text, LengthUnit unit, const char* flag);
   std::optional<Progress> progress_;
 };
 
 [[nodiscard]] Json diagnostics_json(const DiagnosticSink& sink);
+/// Why a run has no result: code, number, exit code, message.
+[[nodiscard]] Json error_json(const Diagnostic& error);
 [[nodiscard]] std::uint64_t peak_memory_bytes();
 /// "512M", "2G", "1.5GiB" in bytes.
 [[nodiscard]] std::optional<std::uint64_t> parse_size(std::string_view text);

@@ -11,10 +11,13 @@
 #include <thread>
 #include <vector>
 
+#include "run.hpp"
+
 namespace meso::cli {
 namespace {
 
 std::atomic<bool> stop{false};
+std::atomic<bool> in_json{false}, answered{false};
 std::atomic<std::int64_t> deadline_ns{0};  // steady clock; 0: none
 
 using Clock = std::chrono::steady_clock;
@@ -37,11 +40,16 @@ void remove_unfinished_files() {
   }
 }
 
-[[noreturn]] void end_now(const char* text, int exit_code) {
+[[noreturn]] void end_now(Code code) {
   remove_unfinished_files();
-  std::fputs(text, stderr);
+  const Diagnostic why{.code = code};
+  if (in_json && claim_answer()) {
+    std::fputs((Json{{"error", error_json(why)}, {"diagnostics", Json::array()}}.dump(2) + "\n").c_str(), stdout);
+    std::fflush(stdout);
+  }
+  std::fputs(("\n" + render(why) + "\n").c_str(), stderr);
   std::fflush(stderr);
-  ::_exit(exit_code);
+  ::_exit(info(code).exit_code);
 }
 
 sigset_t stop_signals() {
@@ -49,6 +57,7 @@ sigset_t stop_signals() {
   sigemptyset(&set);
   sigaddset(&set, SIGINT);
   sigaddset(&set, SIGTERM);
+  sigaddset(&set, SIGHUP);
   return set;
 }
 
@@ -58,18 +67,18 @@ void wait_for_signals() {
   for (;;) {
     const timespec slice{0, 100'000'000};
     if (sigtimedwait(&set, nullptr, &slice) > 0) {
-      if (stop) end_now("\nerror CANCELLED: stopped by the user; nothing was written\n", 130);
+      if (stop) end_now(Code::cancelled);
       stop = true;
       asked = Clock::now();
     }
     const auto now = Clock::now();
     // OpenCASCADE polls only between faces: the work gets a moment to unwind, then the process goes.
     if (stop && now - asked > std::chrono::milliseconds(800)) {
-      end_now("error CANCELLED: stopped by the user; nothing was written\n", 130);
+      end_now(Code::cancelled);
     }
     const std::int64_t limit = deadline_ns;
     if (limit != 0 && now.time_since_epoch().count() > limit) {
-      end_now("error LIMIT_TIME: the time given by --timeout is over; nothing was written\n", 6);
+      end_now(Code::limit_time);
     }
   }
 }
@@ -79,10 +88,15 @@ void wait_for_signals() {
 void watch_stop_signals() {
   const sigset_t set = stop_signals();
   pthread_sigmask(SIG_BLOCK, &set, nullptr);
+  std::signal(SIGXFSZ, SIG_IGN);  // a file beyond `ulimit -f`: the write fails, and is told as such
   std::thread(wait_for_signals).detach();
 }
 
 bool stop_requested() { return stop; }
+
+void answer_stop_in_json() { in_json = true; }
+
+bool claim_answer() { return !answered.exchange(true); }
 
 void clean_on_stop(const fs::path& output) {
   const std::lock_guard lock(folders_mutex);

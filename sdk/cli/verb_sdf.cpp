@@ -6,6 +6,8 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 
+#include "meso/base/number.hpp"
+#include "meso/implicit/surfaces.hpp"
 #include "meso/operations/sdf.hpp"
 #include "meso/sdf/vocabulary.hpp"
 #include "run.hpp"
@@ -22,7 +24,7 @@ void add_flags(CLI::App& flags, Run& run, operations::SdfOptions& options) {
   flags.add_flag("--polish", options.polish, "Vertices on the surface itself, to 1e-6 of a grid spacing");
   flags.add_flag("--no-slivers", options.no_slivers, "Collapse very narrow triangles");
   flags.add_flag("--strict-math", options.strict_math, "Formulas as written, none regrouped");
-  flags.add_flag("--double", options.double_coordinates, "Coordinates in double precision (.ply)");
+  flags.add_flag("--double", options.double_coordinates, "Coordinates in double precision (not .stl)");
   flags.add_flag("--ascii", options.ascii, "Text instead of binary (.stl)");
   add_work_flags(flags, run.flags);
   add_json_flag(flags, run.flags);
@@ -47,7 +49,17 @@ void print_help(const CLI::App& flags) {
   };
   line("tpms.NAME", "", "all points where a periodic surface's expression is negative: tpms.gyroid");
   for (const sdf::Vocable& v : sdf::vocabulary()) line(v.word, v.argument, v.meaning);
-  fmt::print("\nOptions, anywhere; the last of equals counts:\n");
+  fmt::print("\nSurfaces (docs/specification/surfaces.md):\n");
+  std::string names;
+  for (const implicit::Surface& surface : implicit::surfaces()) {
+    const std::string name = fmt::format(" tpms.{}", surface.name);
+    if (names.size() + name.size() > 79) {
+      fmt::print(" {}\n", names);
+      names.clear();
+    }
+    names += name;
+  }
+  fmt::print(" {}\n\nOptions, anywhere; the last of equals counts:\n", names);
   line("-b", "x0,y0,z0,x1,y1,z1", "the box (the solid's own, unbounded sides at -1 and 1)");
   line("-s", "n | nx,ny,nz", "samples in all, or along the axes (100^3)");
   line("-o", "PATH", "the mesh: .ply .stl .obj .off .vtk (out.ply)");
@@ -60,22 +72,33 @@ void print_help(const CLI::App& flags) {
 Json report_json(const operations::SdfReport& r, const std::string& out) {
   const operations::MeshMeasures& m = *r.measures;
   const Vec3 size = r.grid.box.max - r.grid.box.min;
+  const double room = size.x * size.y * size.z;
   const auto point = [](Vec3 p) { return Json{p.x, p.y, p.z}; };
   Json j;
   j["output"] = out;
   j["volume"] = m.volume;
   j["area"] = m.area;
-  j["solidFraction"] = m.volume / (size.x * size.y * size.z);
+  j["solidFraction"] = m.volume / room;
+  if (const auto& limit = r.extrapolated) {
+    j["extrapolated"] = {{"volume", limit->volume}, {"area", limit->area}, {"solidFraction", limit->volume / room}};
+  } else {
+    j["extrapolated"] = nullptr;
+  }
   j["triangles"] = r.triangles;
   j["vertices"] = r.points;
   j["components"] = m.components;
+  j["cavities"] = m.cavities;
+  j["crumbs"] = m.crumbs;
   j["closed"] = m.closed;
   j["euler"] = m.euler;
   j["bbox"] = m.box.empty() ? Json() : Json{point(m.box.min), point(m.box.max)};
   j["box"] = {point(r.grid.box.min), point(r.grid.box.max)};
   j["samples"] = r.grid.nodes;
   j["bytes"] = r.bytes;
-  j["seconds"] = {{"read", r.seconds.read}, {"contour", r.seconds.contour}, {"total", r.seconds.total}};
+  j["seconds"] = {{"read", r.seconds.read},
+                  {"contour", r.seconds.contour},
+                  {"extrapolate", r.seconds.extrapolate},
+                  {"total", r.seconds.total}};
   j["peakBytes"] = peak_memory_bytes();
   return j;
 }
@@ -102,11 +125,26 @@ bool take_flags(CLI::App& flags, const std::vector<sdf::GivenFlag>& given, Run& 
   return true;
 }
 
+/// What must hold while words are read, some of them perhaps from a pipe that stays silent. An argument that looks like
+/// these flags does no harm.
+void heed_flags_before_reading(Run& run, const std::vector<std::string>& words) {
+  run.flags.json = std::find(words.begin(), words.end(), "--json") != words.end();
+  if (run.flags.json) answer_stop_in_json();
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    constexpr std::string_view with_value = "--timeout=";
+    std::string_view value;
+    if (words[i].starts_with(with_value)) value = std::string_view(words[i]).substr(with_value.size());
+    if (words[i] == "--timeout" && i + 1 < words.size()) value = words[i + 1];
+    if (const auto seconds = parse_number(value); seconds && *seconds > 0 && *seconds <= 1e9) end_after(*seconds);
+  }
+}
+
 }  // namespace
 
 void add_sdf(CLI::App& app) { app.add_subcommand("sdf", description)->prefix_command(); }
 
 int sdf_verb(Run& run, const std::vector<std::string>& words) {
+  heed_flags_before_reading(run, words);
   CLI::App flags;
   flags.set_help_flag();  // -h is a word
   operations::SdfOptions options;
@@ -114,16 +152,17 @@ int sdf_verb(Run& run, const std::vector<std::string>& words) {
   const std::vector<sdf::CallerFlag> ours = caller_flags(flags);
   const auto program = sdf::parse_program(sdf::words_of_arguments(words),
                                           {.caller_flags = ours, .read_text = operations::read_text}, run.sink);
-  if (!program || !take_flags(flags, program->caller_flags, run)) {
-    run.flags.json = std::find(words.begin(), words.end(), "--json") != words.end();
-    return run.finish(Json::object());
-  }
+  if (!program) return run.finish(Json::object());
+  // From now on what the words say.
+  run.flags.json = std::any_of(program->caller_flags.begin(), program->caller_flags.end(),
+                               [](const sdf::GivenFlag& flag) { return flag.name == "--json"; });
+  if (!take_flags(flags, program->caller_flags, run)) return run.finish(Json::object());
   if (program->asks == sdf::Program::Asks::help) return print_help(flags), 0;
   if (program->asks == sdf::Program::Asks::version) return fmt::print("{}\n", MESO_VERSION), 0;
   options.run = run.options();
   options.existing = run.existing_file();
   options.measure = run.flags.json;
-  if (run.sink.has_errors()) return run.finish();
+  if (run.sink.has_errors()) return run.finish(Json::object());
   clean_on_stop(program->output);
   const auto report = operations::run_sdf(*program, options, run.sink);
   if (!report) return run.finish(Json{{"output", program->output}});
