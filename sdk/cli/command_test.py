@@ -387,6 +387,19 @@ class CommandLanguage(CommandTest):
         self.assertEqual(limited.returncode, 7, limited.stderr)
         self.assertEqual(list(self.folder.glob("*a.ply*")), [])
 
+    @needs("verify")
+    @needs("render")
+    def test_meshes_are_judged_and_drawn(self):
+        for name in ("a.ply", "a.stl", "a.obj", "a.off"):
+            with self.subTest(name=name):
+                self.sdf(0, f"ball -s 20^3 -o {name}")
+                report = json.loads(self.expect(0, "verify", self.folder / name, "--json").stdout)
+                self.assertEqual((report["verdict"], report["closed"], report["solids"]), ("passed", True, 1))
+                self.expect(0, "render", self.folder / name, self.folder / "a.png", "--width", "64", "--height", "64")
+                self.expect(2, "verify", self.folder / name, "--set", "n=1", says="on documents only")
+        self.sdf(0, "ball -s 20^3 -o a.vtk")  # written, not read
+        self.expect(3, "verify", self.folder / "a.vtk", says="MESH_FILE_FORMAT")
+
     def test_an_empty_solid_is_a_warning(self):
         report = json.loads(self.sdf(0, "tpms.gyroid offset -9 --json", says="SDF_EMPTY").stdout)
         self.assertEqual((report["triangles"], report["volume"], report["bbox"]), (0, 0, None))

@@ -34,8 +34,8 @@ void check_self_contact(VerifyReport& report, const TriangleMesh& mesh) {
 
 }  // namespace
 
-std::optional<VerifyReport> audit_stl(const std::filesystem::path& file, DiagnosticSink& sink) {
-  const auto mesh = read_stl_file(file, sink);
+std::optional<VerifyReport> audit_mesh_file(const std::filesystem::path& file, DiagnosticSink& sink) {
+  const auto mesh = read_mesh_file(file, sink);
   if (!mesh) return std::nullopt;
   const MeshAudit audit = audit_mesh(*mesh);
   VerifyReport report{.closed = audit.watertight(), .triangles = audit.triangles};

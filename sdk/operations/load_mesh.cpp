@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "meso/operations/load_mesh.hpp"
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
@@ -10,6 +11,7 @@
 #include "file_extension.hpp"
 #include "meso/brep/read_step.hpp"
 #include "meso/import_surface_mesh/read_stl.hpp"
+#include "meso/import_surface_mesh/read_surface_mesh.hpp"
 #include "read_mesh.hpp"
 
 namespace meso::operations {
@@ -27,9 +29,18 @@ std::optional<TriangleMesh> read_stl_file(const std::filesystem::path& file, Dia
   return read_stl(bytes, file.string(), sink);
 }
 
+bool is_mesh_file(const std::filesystem::path& file) {
+  static constexpr std::string_view extensions[] = {".stl", ".ply", ".obj", ".off", ".vtk"};
+  return std::ranges::find(extensions, lower_extension(file)) != std::end(extensions);
+}
+
+std::optional<TriangleMesh> read_mesh_file(const std::filesystem::path& file, DiagnosticSink& sink) {
+  return lower_extension(file) == ".stl" ? read_stl_file(file, sink) : read_surface_mesh_file(file, sink);
+}
+
 std::optional<TriangleMesh> load_mesh(const std::filesystem::path& file, MakeOptions options, DiagnosticSink& sink) {
+  if (is_mesh_file(file)) return read_mesh_file(file, sink);
   const std::string extension = lower_extension(file);
-  if (extension == ".stl") return read_stl_file(file, sink);
   if (extension == ".step" || extension == ".stp") {
     const auto body = brep::read_step(
         file, {.deflection_mm = options.deflection_mm.value_or(0.1), .angle_rad = options.angle_rad.value_or(0.3)},

@@ -14,6 +14,7 @@
 #include "meso/validate/validate.hpp"
 #include "meso/xml/read.hpp"
 #include "prepare.hpp"
+#include "read_mesh.hpp"
 
 namespace meso::operations {
 namespace fs = std::filesystem;
@@ -136,8 +137,8 @@ std::optional<VerifyReport> verify(const fs::path& file, const MakeOptions& opti
                                    const std::optional<DeepCheck>& deep, DiagnosticSink& sink) {
   const std::string extension = lower_extension(file);
   std::optional<VerifyReport> report;
-  if (extension == ".stl") {
-    report = audit_stl(file, sink);
+  if (is_mesh_file(file)) {
+    report = audit_mesh_file(file, sink);
   } else if (extension == ".step" || extension == ".stp") {
     report = audit_step(file, options.run, sink);
   } else {

@@ -12,6 +12,7 @@
 #include "meso/export_step/write_step.hpp"
 #include "meso/export_stl/write_stl.hpp"
 #include "meso/operations/convert.hpp"
+#include "read_mesh.hpp"
 
 namespace meso::operations {
 namespace {
@@ -75,7 +76,7 @@ class StoppableSink final : public ByteSink {
 
 bool is_document(const std::filesystem::path& file) {
   const std::string extension = lower_extension(file);
-  return extension != ".step" && extension != ".stp" && extension != ".stl";
+  return extension != ".step" && extension != ".stp" && !is_mesh_file(file);
 }
 
 std::optional<bool> output_needs_mesh(const std::filesystem::path& file) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Triangles of whatever can be drawn: a document (realised), .step .stp (tessellated) or .stl (as it is).
+// Triangles of whatever can be drawn: a document (realised), .step .stp (tessellated) or .stl .ply .obj
+// .off (as they are).
 
 #include "meso/operations/convert.hpp"
 
