@@ -11,6 +11,7 @@
 #include "meso/operations/sdf.hpp"
 #include "meso/sdf/vocabulary.hpp"
 #include "run.hpp"
+#include "sdf_volumes.hpp"
 #include "stop.hpp"
 
 namespace meso::cli {
@@ -62,7 +63,7 @@ void print_help(const CLI::App& flags) {
   fmt::print(" {}\n\nOptions, anywhere; the last of equals counts:\n", names);
   line("-b", "x0,y0,z0,x1,y1,z1", "the box (the solid's own, unbounded sides at -1 and 1)");
   line("-s", "n | nx,ny,nz", "samples in all, or along the axes (100^3)");
-  line("-o", "PATH", "the mesh: .ply .stl .obj .off .vtk (out.ply)");
+  line("-o", "PATH", "the mesh: .ply .stl .obj .off .vtk (out.ply); .vtu .msh .inp .nrrd .vti .h5 .svg .png");
   line("@PATH", "", "the words of that file");
   line("-h --help", "", "this");
   line("--version", "", "the version");
@@ -149,6 +150,8 @@ int sdf_verb(Run& run, const std::vector<std::string>& words) {
   flags.set_help_flag();  // -h is a word
   operations::SdfOptions options;
   add_flags(flags, run, options);
+  operations::VolumeOptions volume;
+  add_volume_flags(flags, volume);
   const std::vector<sdf::CallerFlag> ours = caller_flags(flags);
   const auto program = sdf::parse_program(sdf::words_of_arguments(words),
                                           {.caller_flags = ours, .read_text = operations::read_text}, run.sink);
@@ -163,7 +166,18 @@ int sdf_verb(Run& run, const std::vector<std::string>& words) {
   options.existing = run.existing_file();
   options.measure = run.flags.json;
   if (run.sink.has_errors()) return run.finish(Json::object());
+  if (!operations::check_volume_options(program->output, volume, run.sink)) return run.finish(Json::object());
   clean_on_stop(program->output);
+  if (operations::is_volume_output(program->output)) {
+    if (options.polish || options.no_slivers || options.double_coordinates)
+      return run.usage_error("--polish, --no-slivers and --double have an effect on surfaces only"),
+             run.finish(Json::object());
+    volume.strict_math = options.strict_math;
+    volume.ascii = options.ascii;
+    volume.existing = options.existing;
+    volume.run = options.run;
+    return sdf_volume(run, *program, volume);
+  }
   const auto report = operations::run_sdf(*program, options, run.sink);
   if (!report) return run.finish(Json{{"output", program->output}});
   if (run.flags.json) return run.finish(report_json(*report, program->output));
