@@ -254,6 +254,17 @@ TEST(ReadSurfaceMesh, ReadsFiles) {
   EXPECT_FALSE(read_surface_mesh_file(::testing::TempDir(), sink));
 }
 
+TEST(ReadSurfaceMesh, FilesMayNotTakeMoreThanTheirShareOfTheBudget) {
+  const auto told = [](const std::filesystem::path& path, const RunOptions& run) {
+    DiagnosticSink sink;
+    EXPECT_FALSE(read_surface_mesh_file(path, sink, run));
+    return sink.diagnostics().at(0).code;
+  };
+  EXPECT_EQ(told("/dev/zero", {.max_memory_bytes = 1u << 24}), Code::file_too_large);  // it never ends
+  EXPECT_EQ(told("/dev/zero", {.cancelled = [] { return true; }}), Code::cancelled);
+  EXPECT_EQ(told("/dev/zero", {.deadline = std::chrono::steady_clock::now()}), Code::limit_time);
+}
+
 TEST(ReadPly, RefusesPointsWithoutCoordinates) {
   constexpr std::string_view start = "ply\nformat ascii 1.0\nelement vertex 4000000000\nelement face 1\n";
   for (const std::string_view face : {"4 0 1000000000 2000000000 3\n", "3 0 1 2\n"}) {
