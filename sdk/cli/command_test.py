@@ -215,9 +215,30 @@ class ExitCodes(CommandTest):
             with self.subTest(says=says):
                 self.expect(code, "convert", self.file("a.meso", text), self.out(), says=says)
                 self.assert_nothing_written()
-        self.expect(4, "convert", self.file("a.meso", document()), self.out(), "--engine", "implicit", says="ENGINE_NOT_BUILT")
+        self.expect(2, "convert", self.file("a.meso", document()), self.out(), "--engine", "implicit", says="exact faces")
         self.expect(6, "convert", self.file("a.meso", document()), self.out(), "--max-cells", "2", says="LIMIT_CELLS")
         self.assert_nothing_written()
+
+    @needs("convert")
+    def test_bodies_that_are_fields(self):
+        field = self.file("field.meso", document(body='<implicit field="hypot(x, hypot(y, z)) - r"/>'))
+        for name in ("a.stl", "a.ply", "a.obj", "a.off", "a.vtk"):
+            out = self.out(name)
+            self.expect(0, "convert", field, out, "--spacing", "0.2mm", says="ENGINE_CHOSEN")
+            self.assertGreater(pathlib.Path(out).stat().st_size, 1000)
+        solid = self.file("solid.meso", document())
+        report = json.loads(self.expect(0, "convert", solid, self.out("b.ply"), "--engine", "implicit", "--samples", "60^3",
+                                        "--measure", "--json").stdout)
+        self.assertEqual(report["engine"], "implicit")
+        self.assertTrue(report["closed"])
+        exact = json.loads(self.expect(0, "convert", solid, self.out("c.ply"), "--json").stdout)
+        self.assertEqual(exact["engine"], "brep")
+        self.assertLess(abs(report["volume"] / exact["volume"] - 1), 0.05)
+        for flags in (["--engine", "brep", "--spacing", "1mm"], ["--engine", "implicit", "--deflection", "1mm"],
+                      ["--samples", "1"], ["--samples", "2,3"], ["--spacing", "0"], ["--spacing", "1mm", "--samples", "9"]):
+            self.expect(2, "convert", solid, self.out("d.ply"), *flags)
+        self.expect(6, "convert", field, self.out("d.ply"), "--samples", "60000^3", "--max-memory", "64M", says="LIMIT_GRID")
+        self.assertFalse(pathlib.Path(self.out("d.ply")).exists())
 
     @needs("convert")
     def test_limits_of_time_and_memory(self):

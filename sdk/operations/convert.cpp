@@ -86,6 +86,7 @@ bool is_beyond_exact_engine(const DiagnosticSink& told) {
   for (const Diagnostic& d : told.diagnostics()) {
     if (severity(d) != Severity::error) continue;
     const int exit_code = info(d.code).exit_code;
+    if (d.code == Code::geometry_fragments || d.code == Code::geometry_empty) return false;
     return exit_code == 4 || exit_code == 5 || d.code == Code::limit_booleans;
   }
   return false;

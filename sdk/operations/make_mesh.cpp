@@ -13,6 +13,7 @@
 #include "meso/implicit/compile.hpp"
 #include "meso/implicit/contour.hpp"
 #include "meso/import_surface_mesh/read_surface_mesh.hpp"
+#include "meso/operations/macrostructure_distance.hpp"
 #include "meso/validate/validate.hpp"
 #include "meso/xml/read.hpp"
 #include "stopwatch.hpp"
@@ -95,7 +96,11 @@ std::optional<eval::Evaluation> open_document(const fs::path& document, const Ma
       read ? validate(std::move(read->document), std::move(read->source), document.parent_path(), sink) : std::nullopt;
   seconds.read = watch.lap();
   auto evaluation = checked
-                        ? eval::Evaluation::make(*checked, {.overrides = options.overrides, .run = options.run}, sink)
+                        ? eval::Evaluation::make(*checked,
+                                                 {.overrides = options.overrides,
+                                                  .run = options.run,
+                                                  .distance = macrostructure_distance(options.overrides, options.run)},
+                                                 sink)
                         : std::nullopt;
   seconds.evaluate = watch.lap();
   return evaluation;
