@@ -45,8 +45,8 @@ class Source final : public GridSource {
   [[nodiscard]] std::unique_ptr<GridSampler> sampler() const override;
   [[nodiscard]] bool signs_only() const override { return signs_only_; }
 
-  [[nodiscard]] std::uint64_t bytes() const override { return bytes_; }
-  void count(std::uint64_t bytes) { bytes_ = bytes; }
+  [[nodiscard]] std::uint64_t bytes() const override { return external_bytes_ + plan_.table_bytes(); }
+  void count_externals(std::uint64_t bytes) { external_bytes_ = bytes; }
 
   [[nodiscard]] const Plan& plan() const { return plan_; }
   [[nodiscard]] bool prunes() const { return prunes_; }
@@ -78,7 +78,7 @@ class Source final : public GridSource {
   std::vector<Band> bands_;
   std::vector<std::unique_ptr<ExternalField::Prepared>> externals_;
   bool prunes_, signs_only_ = false;
-  std::uint64_t bytes_ = 0;
+  std::uint64_t external_bytes_ = 0;
 };
 
 class Sampler final : public GridSampler {
@@ -158,17 +158,15 @@ std::unique_ptr<GridSampler> Source::sampler() const { return std::make_unique<S
 
 namespace {
 
-/// What external fields hold, each once, and take for the grid; and tables, at most.
-std::uint64_t bytes_of(const Graph& graph, const Grid& grid, std::uint64_t tables) {
+/// What external fields hold, each once, and take for the grid.
+std::uint64_t bytes_of_externals(const Graph& graph, const Grid& grid) {
   std::set<const ExternalField*> seen;
-  std::uint64_t bytes = tables;
+  std::uint64_t bytes = 0;
   for (const ExternalLeaf& leaf : graph.externals()) {
     if (seen.insert(leaf.field.get()).second) bytes += leaf.field->bytes();
     bytes += leaf.field->prepared_bytes(grid);
   }
-  const auto along = static_cast<std::uint64_t>(grid.nodes[0]) + static_cast<std::uint64_t>(grid.nodes[1]) +
-                     static_cast<std::uint64_t>(grid.nodes[2]);
-  return bytes + graph.size() * along * sizeof(double);
+  return bytes;
 }
 
 std::uint64_t mebibytes(std::uint64_t bytes) { return (bytes + (std::uint64_t{1} << 20) - 1) >> 20; }
@@ -182,8 +180,8 @@ std::unique_ptr<GridSource> compile(const Term& term, const Grid& grid, const Co
   Graph::Id root = graph.from_term(term);
   CompileOptions within_budget = options;
   within_budget.max_table_bytes = std::min(options.max_table_bytes, run.max_memory_bytes / 4);
-  const std::uint64_t bytes = bytes_of(graph, grid, 0);
-  if (!graph.externals().empty() && bytes > run.max_memory_bytes) {
+  const std::uint64_t bytes = bytes_of_externals(graph, grid);
+  if (bytes > run.max_memory_bytes) {
     sink.report({.code = Code::limit_grid_memory,
                  .args = {std::to_string(grid.node_count()), std::to_string(mebibytes(bytes)), "the meshes in it",
                           std::to_string(mebibytes(run.max_memory_bytes))}});
@@ -194,7 +192,7 @@ std::unique_ptr<GridSource> compile(const Term& term, const Grid& grid, const Co
   root = fit_to_floats(graph, root, term, grid);
   if (!run.should_stop()) {
     auto source = std::make_unique<Source>(std::move(graph), root, grid, within_budget);
-    source->count(bytes);
+    source->count_externals(bytes);
     if (source->prepare(bands, run)) return source;
   }
   sink.report({.code = run.out_of_time() ? Code::limit_time : Code::cancelled});

@@ -35,6 +35,8 @@ class Plan {
   /// A value per node of the axis. REQUIRES: where(id) is the table of that axis.
   [[nodiscard]] const double* table(Graph::Id id) const { return tables_.data() + places_[id].offset; }
 
+  [[nodiscard]] std::uint64_t table_bytes() const { return table_size_ * sizeof(double); }
+
   /// What a thread keeps for the plane it is in: doubles that the programs below need.
   [[nodiscard]] std::size_t plane_size() const { return plane_size_; }
   [[nodiscard]] Program plane_rows(double* plane) const;
