@@ -40,7 +40,7 @@ struct BccLattice {
 /// keeps its edges sharp. REQUIRES: a box of positive size, a positive spacing.
 [[nodiscard]] BccLattice bcc_lattice(const Box3& box, double spacing);
 
-/// Radians; proven in the paper for its choice of how close is close (10.78 and 164.74 degrees).
+/// Radians: 10.7 and 164.8 degrees, proven in the paper for the choice of how close is close that is made here.
 inline constexpr double min_dihedral_bound = 0.18675, max_dihedral_bound = 2.87630;
 
 /// REQUIRES: sources on the lattice's two grids.
