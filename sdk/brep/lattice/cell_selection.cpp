@@ -80,24 +80,26 @@ class Shares {
     if (fresh) tasks_.push_back({.solid = solid, .box = box, .volume = 0, .fault = {}});
     return it->second;
   }
-  /// Empty, or the first fault.
+  /// Does what was asked since the last time. Empty, or the first fault.
   [[nodiscard]] std::string run(const RunOptions& run) {
     std::deque<CellClipper> clippers;
-    for (std::size_t i = 0; i < workers_for(tasks_.size(), run); ++i)
+    for (std::size_t i = 0; i < workers_for(tasks_.size() - done_, run); ++i)
       clippers.emplace_back(judged_.solids, surface_, grid_, run);
-    (void)in_parallel(tasks_.size(), run, [&](std::size_t worker, std::size_t i) {
-      Task& task = tasks_[i];
+    (void)in_parallel(tasks_.size() - done_, run, [&](std::size_t worker, std::size_t i) {
+      Task& task = tasks_[done_ + i];
       ClippedCell clipped = clippers[worker].clip(task.solid, task.box, surface_.faces(task.box));
       task.fault = std::move(clipped.fault);
       if (clipped.left == ClippedCell::Left::all) task.volume = judged_.volumes[task.solid];
       if (clipped.left == ClippedCell::Left::part) task.volume = volume_of(clipped.solid);
       return task.fault.empty();
     });
+    done_ = tasks_.size();
     for (const Task& task : tasks_)
       if (!task.fault.empty()) return task.fault;
     return {};
   }
   [[nodiscard]] double volume(std::size_t task) const { return tasks_[task].volume; }
+  [[nodiscard]] std::uint32_t solid(std::size_t task) const { return tasks_[task].solid; }
 
  private:
   struct Task {
@@ -113,6 +115,7 @@ class Shares {
   std::map<Index3, ClipSignatures::Signature> signature_of_;
   std::map<ClipSignatures::Signature, std::size_t> known_;
   std::vector<Task> tasks_;
+  std::size_t done_ = 0;
 };
 
 template <typename Visit>
@@ -148,24 +151,30 @@ class Selection {
         surface_(body, grid_),
         run_(run) {}
 
-  /// Empty, or a fault.
+  /// Empty, or a fault. Boxes that need no geometry speak first, then the cell's own box, then what is still in doubt.
   [[nodiscard]] std::string judge() {
     Shares shares(judged_, surface_, grid_);
     std::vector<std::vector<std::size_t>> asked;
-    visit_cells(last_, [&](const Index3& cell) {
-      double whole = 0;
-      std::vector<std::size_t>& tasks = asked.emplace_back();
-      for (std::uint32_t s = 0; s < judged_.shifts.size(); ++s) {
-        const Index3 box = cell + judged_.shifts[s];
-        const BoxPlace place = surface_.place(box);
-        if (place == BoxPlace::inside) whole += judged_.volumes[s];
-        if (place == BoxPlace::crossing) tasks.push_back(shares.ask(s, box));
-      }
-      inside_.push_back(whole);
-    });
-    if (std::string fault = shares.run(run_); !fault.empty()) return fault;
-    for (std::size_t n = 0; n < inside_.size(); ++n)
-      for (const std::size_t task : asked[n]) inside_[n] += shares.volume(task);
+    const auto parts = static_cast<std::uint32_t>(judged_.shifts.size());
+    for (const bool own : {true, false}) {
+      const std::uint32_t first = own ? 0 : 1, end = own ? std::min(1u, parts) : parts;
+      asked.clear();
+      std::size_t n = 0;
+      visit_cells(last_, [&](const Index3& cell) {
+        std::vector<std::size_t>& tasks = asked.emplace_back();
+        if (own) count_whole_boxes(cell);
+        if (!decided(n++))
+          for (std::uint32_t s = first; s < end; ++s)
+            if (const Index3 box = cell + judged_.shifts[s]; surface_.place(box) == BoxPlace::crossing)
+              tasks.push_back(shares.ask(s, box));
+      });
+      if (std::string fault = shares.run(run_); !fault.empty()) return fault;
+      for (n = 0; n < inside_.size(); ++n)
+        for (const std::size_t task : asked[n]) {
+          inside_[n] += shares.volume(task);
+          outside_[n] += judged_.volumes[shares.solid(task)] - shares.volume(task);
+        }
+    }
     take();
     return {};
   }
@@ -184,6 +193,20 @@ class Selection {
   }
 
  private:
+  void count_whole_boxes(const Index3& cell) {
+    double inside = 0, outside = 0;
+    for (std::uint32_t s = 0; s < judged_.shifts.size(); ++s) {
+      const BoxPlace place = surface_.place(cell + judged_.shifts[s]);
+      if (place == BoxPlace::inside) inside += judged_.volumes[s];
+      if (place == BoxPlace::outside) outside += judged_.volumes[s];
+    }
+    inside_.push_back(inside);
+    outside_.push_back(outside);
+  }
+  [[nodiscard]] bool decided(std::size_t n) const {
+    return (rule_.rule == BoundaryRule::drop_partial ? outside_[n] : inside_[n]) > forgiven();
+  }
+
   static std::size_t at_least(std::int32_t last) { return static_cast<std::size_t>(last) + 1; }
   [[nodiscard]] double forgiven() const { return rule_tolerance * judged_.area; }
 
@@ -192,8 +215,7 @@ class Selection {
     const Boundary boundary(body_);
     std::size_t n = 0;
     visit_cells(last_, [&](const Index3& cell) {
-      const double inside = inside_[n++];
-      bool taken = whole ? judged_.volume - inside <= forgiven() : inside > forgiven();
+      bool taken = decided(n++) != whole;
       if (taken && whole && rule_.clearance > rule_tolerance && !run_.should_stop())
         taken = keeps_clear(boundary, cell);
       taken_.push_back(taken);
@@ -222,7 +244,7 @@ class Selection {
   CellGrid grid_;
   BodySurface surface_;
   const RunOptions& run_;
-  std::vector<double> inside_;  ///< volume of what is judged, in the body; per cell
+  std::vector<double> inside_, outside_;  ///< volume of what is judged, as far as it is known; per cell
   std::vector<bool> taken_;
 };
 
