@@ -15,7 +15,7 @@ namespace {
 void print_grid(const operations::ConvertReport& r, const std::string& out) {
   fmt::print(stderr, "{}: {} bytes, {} triangles; {} x {} x {} samples, {:g} mm apart\n", out, r.bytes, r.triangles,
              r.grid_nodes[0], r.grid_nodes[1], r.grid_nodes[2], r.spacing_mm);
-  if (r.cells.placed > 0) fmt::print(stderr, "cells: {} placed, {} kept\n", r.cells.placed, r.cells.kept);
+  if (r.cells.placed > 0) fmt::print(stderr, "cells: {} placed\n", r.cells.placed);
   if (r.mesh)
     fmt::print(stderr, "volume {:.6f} mm3, area {:.6f} mm2, {} in {} piece{}; ", r.mesh->volume, r.mesh->area,
                r.mesh->closed ? "closed" : "NOT CLOSED", r.mesh->components, r.mesh->components == 1 ? "" : "s");
@@ -48,7 +48,7 @@ Json report_json(const operations::ConvertReport& r, const std::string& in, cons
   j["way"] = r.way;
   if (r.spacing_mm > 0) {
     j["grid"] = {{"nodes", r.grid_nodes}, {"spacing", r.spacing_mm}};
-    j["cells"] = {{"placed", r.cells.placed}, {"kept", r.cells.kept}};
+    j["cells"] = {{"placed", r.cells.placed}};
     j["triangles"] = r.triangles;
     if (r.mesh) {
       j["volume"] = r.mesh->volume;
