@@ -23,7 +23,7 @@
 //
 // Errors: MESH_EMPTY, MESH_COORDINATES, MESH_MEMORY, LIMIT_TIME, CANCELLED. Warnings: MESH_NOT_CLOSED, MESH_TURNED,
 // MESH_INSIDE_OUT, MESH_REPEATED, MESH_OVERLAPS. Cost, on a machine busy with other
-// work: 0.45 s of CPU for a million triangles; then 3 us a signed distance near the surface, several times that far
+// work: 0.5 s of CPU for a million triangles; then 3 us a signed distance near the surface, several times that far
 // from it (bench/mesh_distance_bench.cpp). Thread rule: immutable, safe to share; make() and prepare() use jobs
 // threads.
 
