@@ -83,7 +83,8 @@ def solve(ccx, folder, name, nodes, elements):
     """Force over area over strain over modulus. Sums the reactions of the upper face."""
     kind = "C3D4" if len(elements[0]) == 4 else "C3D8"
     lines = ["*NODE, NSET=ALL"]
-    lines += [f"{n},{x!r},{y!r},{z!r}" for n, (x, y, z) in sorted(nodes.items())]
+    # CalculiX takes 20 characters of a number.
+    lines += [f"{n},{x:.13g},{y:.13g},{z:.13g}" for n, (x, y, z) in sorted(nodes.items())]
     lines.append(f"*ELEMENT, TYPE={kind}, ELSET=SOLID")
     lines += [",".join(map(str, (i, *e))) for i, e in enumerate(elements, 1)]
     for face, z in (("LOWER", 0), ("UPPER", SIZE)):

@@ -29,6 +29,12 @@ class Chunked {
     char* to = buffer_.claim(32);
     buffer_.advance(static_cast<std::size_t>(std::to_chars(to, to + 32, n).ptr - to));
   }
+  /// Rounded to so many significant digits.
+  void number(double n, int digits) {
+    char* to = buffer_.claim(32);
+    buffer_.advance(
+        static_cast<std::size_t>(std::to_chars(to, to + 32, n, std::chars_format::general, digits).ptr - to));
+  }
   /// Little-endian, as all formats here say of themselves.
   template <class Value>
   void raw(const Value& value) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Abaqus and CalculiX. Sets take at most 16 numbers a line.
+// Abaqus and CalculiX. Sets take at most 16 numbers a line, and a number at most 20 characters: CalculiX leaves out the
+// rest, an exponent too.
 
 #include <string>
 
@@ -8,6 +9,8 @@
 
 namespace meso {
 namespace {
+
+constexpr int coordinate_digits = 13;  // -1.234567890123e-100
 
 std::string upper(std::string_view name) {
   std::string out(name);
@@ -53,7 +56,7 @@ void write_inp(const TetMesh& mesh, Chunked& out) {
     out.number(i + 1);
     for (std::size_t a = 0; a < 3; ++a) {
       out.text(",");
-      out.number(mesh.points[i][a]);
+      out.number(mesh.points[i][a], coordinate_digits);
     }
     out.text("\n");
   }

@@ -84,6 +84,13 @@ TEST(WriteTetMesh, InpHasNodesElementsAndSetsOfSides) {
 )");
 }
 
+TEST(WriteTetMesh, InpHasNoNumberOfMoreThanTwentyCharacters) {
+  TetMesh mesh = pair();
+  mesh.points[4] = {-1e-5 / 3, 2e-105 / 3, -0.0002 / 3};
+  EXPECT_NE(written(mesh, TetFormat::inp).find("\n5,-3.333333333333e-06,6.666666666667e-106,-6.666666666667e-05\n"),
+            std::string::npos);
+}
+
 TEST(WriteTetMesh, SetsBreakLinesAfterSixteenNumbers) {
   TetMesh mesh;
   for (std::uint32_t i = 0; i < 20; ++i) {

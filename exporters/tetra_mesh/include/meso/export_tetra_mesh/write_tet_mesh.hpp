@@ -8,7 +8,8 @@
 // VTU: binary appended (raw, 64-bit headers) or text. MSH: binary; the solid and the sides of its boundary are physical
 // groups. INP: nodes, C3D4 elements in the set SOLID, and for each side of the boundary a node set NAME, an element set
 // and a surface S_NAME; a file to be included, without material or steps. Numbers in text are the shortest that read
-// back as the same double. Sides without faces are left out. Equal meshes give equal bytes.
+// back as the same double; of INP, whose fields hold 20 characters, they have 13 digits. Sides without faces are left
+// out. Equal meshes give equal bytes.
 //
 // Streams: constant memory beside the mesh, and a node list for each side. False: stopped (LIMIT_TIME, CANCELLED), or
 // the file failed, which OutputFile::commit() reports.
