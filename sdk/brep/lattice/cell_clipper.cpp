@@ -61,7 +61,10 @@ ClippedCell CellClipper::clip(std::uint32_t kind, const Index3& cell, const std:
       if (fault.empty()) fault = failure.GetMessageString();
     }
   }
-  return {.fault = fault.empty() ? "stopped" : fault};
+  if (fault.empty()) return {.fault = "stopped"};
+  std::string at;
+  for (const std::int32_t i : cell) at += (at.empty() ? "cell (" : ", ") + std::to_string(i);
+  return {.fault = at + ") in " + std::to_string(ladder.size()) + " ways: " + fault};
 }
 
 ClippedCell CellClipper::attempt(const Attempt& how, WholeCell& whole, const Index3& cell,

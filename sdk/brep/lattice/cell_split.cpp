@@ -18,7 +18,9 @@
 namespace meso::brep {
 namespace {
 
-constexpr double tiny = 1e-6;            ///< relative to the cell: of volumes, and of areas as vectors
+constexpr double tiny = 1e-6;  ///< relative to the cell: of lengths and volumes
+// Of areas as vectors: edges known to 1e-4 of the cell leave gaps of this size between their faces.
+constexpr double open_area = 1e-4;
 constexpr double edge_tolerance = 1e-3;  ///< of the cell
 
 std::vector<Triangle3> triangles_of(const TopoDS_Face& face) {
@@ -407,7 +409,7 @@ const char* CellSplit::check_sums() {
     if (!whole && moments(p).area <= 2 * tiny * options_.size * extent_of(pieces_[p].face))
       return "a piece of a face has no width";
   }
-  if (norm(area) > tiny * options_.size * options_.size) return "the faces of a piece of a cell do not close";
+  if (norm(area) > open_area * options_.size * options_.size) return "the faces of a piece of a cell do not close";
   return nullptr;
 }
 
@@ -428,6 +430,7 @@ ClippedCell CellSplit::result() {
       joined.join(*first, use.piece);
     }
     if (forward != reversed) return {.fault = "a piece of a cell is not closed"};
+    if (forward > 1) return {.fault = "a piece of a cell touches itself"};
   }
   // A shell for each connected set, with its volume; those of negative volume are voids of the others.
   struct Lump {
