@@ -58,7 +58,7 @@ bool go_on(const RunOptions& run, DiagnosticSink& sink) {
 std::shared_ptr<const implicit::ExternalField> load_field(const std::string& path, const RunOptions& run,
                                                           DiagnosticSink& sink) {
   if (!go_on(run, sink)) return nullptr;
-  const auto mesh = read_surface_mesh_file(path, sink);
+  const auto mesh = read_surface_mesh_file(path, sink, run);
   return mesh && go_on(run, sink) ? implicit::MeshField::make(*mesh, path, run, sink) : nullptr;
 }
 
