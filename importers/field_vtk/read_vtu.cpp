@@ -134,7 +134,8 @@ class VtuReader {
   }
   static void characters(void* self, const XML_Char* text, int size) {
     auto& reader = *static_cast<VtuReader*>(self);
-    if (reader.is_in_array_ && reader.inner_ == 0) reader.arrays_.back().text.append(text, static_cast<std::size_t>(size));
+    if (reader.is_in_array_ && reader.inner_ == 0)
+      reader.arrays_.back().text.append(text, static_cast<std::size_t>(size));
   }
 
   bool fault(const DataArray& array, std::string what) {
