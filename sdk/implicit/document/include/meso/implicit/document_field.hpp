@@ -10,7 +10,8 @@
 // unions and cells grow by `seam` (R-5.12.7 decides boundaries no finer). Boundary rules look at the 16 x 16 x 16
 // parts of each cell that the left operand's boundary may cross.
 //
-// Millimetres, in the part's frame. Errors: an empty optional and what evaluation reports, DOCUMENT_FIELD_*, LIMIT_*.
+// Millimetres, in the part's frame. Errors: an empty optional and what evaluation reports, CONFORMAL_*,
+// IMPLICIT_UNKNOWN_SURFACE, GEOMETRY_FRAGMENTS, LIMIT_*.
 // Cost: a placed cell 0.2 us where the pattern is a lattice of translates, else about 2 us and 100 bytes a strut.
 // Thread rule: pure.
 
