@@ -12,7 +12,7 @@
 //
 // Millimetres, in the part's frame. Errors: an empty optional and what evaluation reports, CONFORMAL_*,
 // IMPLICIT_UNKNOWN_SURFACE, GEOMETRY_FRAGMENTS, LIMIT_*.
-// Cost: a placed cell 0.2 us where the pattern is a lattice of translates, else about 2 us and 100 bytes a strut.
+// Cost: a lattice of translates one period, whatever its size; other patterns about 250 bytes a strut.
 // Thread rule: pure.
 
 #include <functional>
