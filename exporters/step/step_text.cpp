@@ -2,6 +2,7 @@
 #include "step_text.hpp"
 
 #include <algorithm>
+#include <system_error>
 
 namespace meso::step {
 
@@ -15,7 +16,13 @@ void StepText::hand_over() {
   std::swap(buffer_, written_);
   const std::size_t size = std::exchange(used_, 0);
   flushed_ += size;
-  if (ok_) writing_ = std::async(std::launch::async, [this, size] { return sink_.write({written_.data(), size}); });
+  if (!ok_) return;
+  const auto write = [this, size] { return sink_.write({written_.data(), size}); };
+  try {
+    writing_ = std::async(std::launch::async, write);
+  } catch (const std::system_error&) {  // no thread to be had, under a limit on memory for example
+    ok_ = write();
+  }
 }
 
 void StepText::flush() {

@@ -6,6 +6,8 @@
 #include <cassert>
 #include <thread>
 
+#include "meso/base/threads.hpp"
+
 namespace meso::membership {
 namespace {
 
@@ -45,21 +47,16 @@ std::optional<std::vector<Answer>> answers_at(const Membership& part, const Jitt
   std::vector<Answer> answers(points.size());
   std::atomic<std::size_t> next_block = 0;
   std::atomic<bool> stopped = false;
-  const auto work = [&](bool watches) {
+  const auto work = [&](std::size_t worker) {
     for (std::size_t first; !stopped && (first = block_size * next_block++) < points.size();) {
       const std::size_t last = std::min(first + block_size, points.size());
       for (std::size_t i = first; i < last; ++i) answers[i] = part.at(points[i]);
-      if (!watches) continue;
+      if (worker != 0) continue;
       run.report("points", static_cast<double>(last) / static_cast<double>(points.size()));
       if (run.should_stop()) stopped = true;
     }
   };
-  {
-    std::vector<std::jthread> helpers;
-    const unsigned jobs = run.jobs > 0 ? run.jobs : std::max(1u, std::thread::hardware_concurrency());
-    for (unsigned i = 1; i < jobs; ++i) helpers.emplace_back(work, false);
-    work(true);
-  }
+  on_threads(run.jobs > 0 ? run.jobs : std::max(1u, std::thread::hardware_concurrency()), work);
   if (stopped) return {};
   return answers;
 }

@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <atomic>
 #include <thread>
-#include <vector>
 
 #include "meso/base/run_options.hpp"
+#include "meso/base/threads.hpp"
 
 namespace meso::brep {
 
@@ -27,10 +27,7 @@ template <typename Work>
     for (std::size_t i = next++; i < count && !stop; i = next++)
       if (run.should_stop() || !work(worker, i)) stop = true;
   };
-  std::vector<std::thread> others;
-  for (std::size_t w = 1; w < workers_for(count, run); ++w) others.emplace_back(loop, w);
-  loop(0);
-  for (std::thread& thread : others) thread.join();
+  on_threads(workers_for(count, run), loop);
   return !stop;
 }
 

@@ -304,8 +304,6 @@ TEST(DocumentField, WhatCannotBeIsTold) {
     return document.code();
   };
   const std::string whole = part_of("<apply pattern='c' operation='union'/>", false);
-  EXPECT_EQ(code(cells("<box dx='1' dy='1' dz='1'/><implicit surface='gyroyd'/>", loops(1, 1, 1, 1)) + whole),
-            Code::implicit_unknown_surface);
   EXPECT_EQ(code(tube("<implicit surface='gyroid'/>", 21, 18) + whole), Code::conformal_overlap);
   const std::string swept =
       "<coordinateSystems><coordinateSystem id='s'><axis name='r' kind='distance' x='1'/><axis name='t' "
