@@ -217,8 +217,11 @@ class FrdReader {
   }
 
   std::optional<fields::Table> table(const std::string& wanted) {
+    const std::size_t rows = places_.size() / 3;
     std::vector<const DataSet*> taken;
-    for (const DataSet& set : sets_) {
+    for (DataSet& set : sets_) {
+      // Nodes may stand behind results.
+      set.values.resize(rows * set.components.size(), std::numeric_limits<double>::quiet_NaN());
       if (wanted.empty() || set.name == wanted) taken.push_back(&set);
     }
     if (taken.empty() && !wanted.empty()) {
@@ -235,7 +238,6 @@ class FrdReader {
         result.columns.push_back({is_known ? fields::column_name(set->name) + "_" + name : name, {}});
       }
     }
-    const std::size_t rows = places_.size() / 3;
     std::vector<double> values;
     values.reserve(rows * result.columns.size());
     for (std::size_t r = 0; r < rows; ++r) {

@@ -74,5 +74,20 @@ TEST(Frd, SaysWhereItIsWrong) {
               testing::HasSubstr("t.frd:15:1: error FIELD_FILE_SYNTAX: expected numbers in columns of 12"));
 }
 
+TEST(Frd, NodesMayStandBehindResults) {
+  std::string text = bytes_of("cube.frd");
+  std::string head = "    2C", node = " -1       100 1.00000E+00 2.00000E+00 3.00000E+00\n -3\n";
+  head.resize(35, ' ');
+  head += '1';
+  head.resize(74, ' ');
+  text.insert(text.rfind(" 9999"), head + "1\n" + node);
+  DiagnosticSink sink;
+  const auto table = read_field_frd(text, "t.frd", "STRESS", sink);
+  ASSERT_TRUE(table) << render(sink.diagnostics().at(0));
+  ASSERT_EQ(table->records.rows(), 10U);
+  EXPECT_EQ(table->records(9, 2), 3);
+  EXPECT_TRUE(std::isnan(table->records(9, 3)));
+}
+
 }  // namespace
 }  // namespace meso

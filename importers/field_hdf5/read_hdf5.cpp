@@ -81,7 +81,7 @@ class Hdf5Reader {
       return result;
     }
     std::vector<double> values;
-    if (!allocate(values, sets_[0].rows * columns)) return std::nullopt;
+    if (!allocate(values, sets_[0].rows, columns)) return std::nullopt;
     hsize_t first = 0;
     for (const DataSet& set : sets_) {
       if (!read(set, H5T_NATIVE_DOUBLE, values.data(), first, columns)) return std::nullopt;
@@ -99,7 +99,7 @@ class Hdf5Reader {
       return std::nullopt;
     }
     std::vector<std::int64_t> values;
-    if (!allocate(values, set.rows * set.columns) || !read(set, H5T_NATIVE_INT64, values.data(), 0, set.columns))
+    if (!allocate(values, set.rows, set.columns) || !read(set, H5T_NATIVE_INT64, values.data(), 0, set.columns))
       return std::nullopt;
     return values;
   }
@@ -111,8 +111,9 @@ class Hdf5Reader {
   }
 
   template <class T>
-  bool allocate(std::vector<T>& values, hsize_t count) {
-    if (count > run_.max_memory_bytes / sizeof(T)) {
+  bool allocate(std::vector<T>& values, hsize_t rows, hsize_t columns) {
+    hsize_t count = 0;  // extents are what the file states, whatever it holds
+    if (__builtin_mul_overflow(rows, columns, &count) || count > run_.max_memory_bytes / sizeof(T)) {
       sink_.report({.code = Code::limit_memory, .args = {std::to_string(run_.max_memory_bytes >> 20) + " MiB"}});
       return false;
     }

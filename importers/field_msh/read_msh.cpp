@@ -245,6 +245,8 @@ class MshReader {
         result.columns.push_back({fields::column_name(view.name) + suffix(view.width, i), {}});
     }
     const std::size_t rows = places_.size() / 3;
+    // Nodes may stand behind values.
+    for (View& view : views_) view.values.resize(rows * view.width, std::numeric_limits<double>::quiet_NaN());
     std::vector<double> values;
     values.reserve(rows * result.columns.size());
     for (std::size_t r = 0; r < rows; ++r) {

@@ -3,6 +3,7 @@
 
 #include <gmock/gmock.h>
 
+#include <cmath>
 #include <fstream>
 
 #include "meso/base/vec.hpp"
@@ -67,6 +68,17 @@ TEST(MshFaults, AreReportedOnce) {
   EXPECT_THAT(fault_of("$MeshFormat\n3.0 0 8\n$EndMeshFormat\n"), testing::HasSubstr("FIELD_FILE_UNSUPPORTED"));
   EXPECT_THAT(fault_of("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n1\n1 0 0 zero\n"),
               testing::HasSubstr("t.msh:6:7: error FIELD_FILE_SYNTAX: expected a number, found 'zero'"));
+}
+
+TEST(MshNodes, MayStandBehindValues) {
+  DiagnosticSink sink;
+  const auto table = read_field_msh(
+      "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$NodeData\n1\n\"t\"\n1\n0\n3\n0\n1\n0\n$EndNodeData\n"
+      "$Nodes\n2\n1 0 0 0\n2 1 0 0\n$EndNodes\n",
+      "t.msh", "", sink);
+  ASSERT_TRUE(table);
+  ASSERT_EQ(table->records.rows(), 2U);
+  EXPECT_TRUE(std::isnan(table->records(0, 3)) && std::isnan(table->records(1, 3)));
 }
 
 }  // namespace

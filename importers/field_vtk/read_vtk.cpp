@@ -31,7 +31,8 @@ T from_big_endian(const char* bytes) {
 
 class VtkReader {
  public:
-  VtkReader(std::string_view bytes, const std::string& file, DiagnosticSink& sink) : in_(bytes, file, sink) {}
+  VtkReader(std::string_view bytes, const std::string& file, DiagnosticSink& sink)
+      : in_(bytes, file, sink), size_(bytes.size()) {}
 
   std::optional<fields::Table> read(const std::string& wanted) {
     if (!in_.line().starts_with("# vtk DataFile Version")) {
@@ -101,6 +102,7 @@ class VtkReader {
   bool geometry() {
     std::int64_t size[3]{0, 0, 0};
     double origin[3]{0, 0, 0}, spacing[3]{1, 1, 1};
+    const bool is_grid = kind_ == "structured_points" || kind_ == "rectilinear_grid";
     while (true) {
       const std::string word = lower(in_.word());
       if (word.empty() || word == "point_data" || word == "cell_data") {
@@ -115,10 +117,10 @@ class VtkReader {
         for (double& v : origin) good = good && in_.number(v);
       } else if (word == "spacing" || word == "aspect_ratio") {
         for (double& v : spacing) good = good && in_.number(v);
-      } else if (word.ends_with("_coordinates") && word.size() == 13) {
+      } else if (kind_ == "rectilinear_grid" && word.ends_with("_coordinates") && word.size() == 13) {
         good = in_.count(count, most) &&
                numbers(lower(in_.word()), count, content_.grid[static_cast<std::size_t>(word[0] - 'x') % 3]);
-      } else if (word == "points") {
+      } else if (!is_grid && word == "points") {
         good = in_.count(count, most) && numbers(lower(in_.word()), 3 * count, content_.places);
       } else if (word == "cells") {
         good = cells();
@@ -133,6 +135,12 @@ class VtkReader {
       }
       if (!good) return false;
     }
+    if (kind_ == "rectilinear_grid")
+      for (std::size_t a = 0; a < 3; ++a) size[a] = static_cast<std::int64_t>(content_.grid[a].size());
+    // Every point has a value, which takes a byte at least: a few numbers must not fill the memory.
+    double points = 1;
+    for (const std::int64_t n : size) points *= static_cast<double>(n);
+    if (is_grid && points > static_cast<double>(size_)) return in_.expected("data for every point");
     if (kind_ == "structured_points") {
       content_.is_regular = true;
       for (std::size_t a = 0; a < 3; ++a) {
@@ -140,7 +148,7 @@ class VtkReader {
           content_.grid[a].push_back(origin[a] + static_cast<double>(i) * spacing[a]);
       }
     }
-    if (kind_ == "structured_points" || kind_ == "rectilinear_grid") add_grid_points();
+    if (is_grid) add_grid_points();
     return true;
   }
   void add_grid_points() {
@@ -158,7 +166,8 @@ class VtkReader {
     if (!in_.count(count, most) || !in_.count(size, most)) return false;
     if (lower(in_.peek()) != "offsets") return integers("int", size, unused);
     in_.word();
-    if (!integers(lower(in_.word()), count, unused) || lower(in_.word()) != "connectivity") return false;
+    if (!integers(lower(in_.word()), count, unused)) return false;
+    if (lower(in_.word()) != "connectivity") return in_.expected("CONNECTIVITY");
     return integers(lower(in_.word()), size, unused);
   }
   bool cells() {
@@ -251,6 +260,7 @@ class VtkReader {
   }
 
   fields::FileCursor in_;
+  std::size_t size_;
   bool is_binary_ = false, is_points_ = false;
   std::string kind_;
   vtk::Content content_;

@@ -69,6 +69,9 @@ TEST(VtkFaults, AreReportedOnce) {
   EXPECT_THAT(fault_of("solid x", "t.vtk"), testing::HasSubstr("t.vtk:1:1: error FIELD_FILE_SYNTAX"));
   EXPECT_THAT(fault_of(text.substr(0, text.size() - 30), "t.vtk"), testing::HasSubstr("FIELD_FILE_TRUNCATED"));
   EXPECT_THAT(fault_of(binary.substr(0, 300), "t.vtk"), testing::HasSubstr("FIELD_FILE_TRUNCATED"));
+  const std::string grid = "# vtk DataFile Version 3.0\nt\nASCII\nDATASET STRUCTURED_POINTS\nDIMENSIONS ";
+  EXPECT_THAT(fault_of(grid + "17179869184 17179869184 1\nPOINT_DATA 1\n", "t.vtk"),
+              testing::HasSubstr("expected data for every point"));
   EXPECT_THAT(fault_of(text, "t.vtk", "stress"), testing::HasSubstr("no array 'stress'"));
   EXPECT_THAT(fault_of(zlib.substr(0, zlib.size() / 2), "t.vtu"), testing::HasSubstr("well-formed XML"));
   EXPECT_THAT(fault_of(raw.substr(0, raw.size() - 100), "t.vtu"),
@@ -79,6 +82,39 @@ TEST(VtkFaults, AreReportedOnce) {
   ASSERT_NE(data, std::string::npos);
   damaged.replace(data + 4, 4, "AAAA");
   EXPECT_THAT(fault_of(damaged, "t.vtu"), testing::HasSubstr("damaged blocks"));
+}
+
+std::string replaced(std::string text, const std::string& from, const std::string& to) {
+  const std::size_t at = text.find(from);
+  EXPECT_NE(at, std::string::npos) << from;
+  return at == std::string::npos ? text : text.replace(at, from.size(), to);
+}
+
+TEST(VtkFaults, NumbersThatLieAreFound) {
+  const std::string cell =
+      "# vtk DataFile Version 5.1\nt\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 4 double\n0 0 0 1 0 0 0 1 0 0 0 1\n"
+      "CELLS 2 4\nOFFSETS vtktypeint64\n0 4\nCONNECTIVITY vtktypeint64\n0 1 2 3\nCELL_TYPES 1\n10\n"
+      "POINT_DATA 4\nSCALARS s double\nLOOKUP_TABLE default\n1 2 3 4\n";
+  DiagnosticSink sink;
+  ASSERT_TRUE(read(cell, "t.vtk", "", sink));
+  for (const char* offsets : {"4000000000 -9223372036854775808", "9223372036854775807 -9", "2 4", "-4 0", "4 0"})
+    EXPECT_THAT(fault_of(replaced(cell, "\n0 4\n", std::string("\n") + offsets + "\n"), "t.vtk"),
+                testing::HasSubstr("cells with enough points"));
+  // 2^62 numbers for each of four points are none, modulo 2^64.
+  const std::string array =
+      "<VTKFile type=\"UnstructuredGrid\"><UnstructuredGrid><Piece><Points><DataArray type=\"Float64\" "
+      "format=\"ascii\">0 0 0 1 0 0 0 1 0 0 0 1</DataArray></Points><PointData><DataArray type=\"Float64\" "
+      "Name=\"s\" NumberOfComponents=\"4611686018427387904\" format=\"ascii\"/></PointData></Piece>"
+      "</UnstructuredGrid></VTKFile>";
+  EXPECT_THAT(fault_of(array, "t.vtu"), testing::HasSubstr("4611686018427387904 numbers for each point"));
+  // Two packed blocks whose sizes add up to 0, modulo 2^64.
+  const std::uint64_t header[] = {2, 8, 8, ~std::uint64_t{0} - 9, 10};
+  const std::string packed =
+      "<VTKFile type=\"UnstructuredGrid\" header_type=\"UInt64\" compressor=\"vtkZLibDataCompressor\">"
+      "<UnstructuredGrid><Piece><Points><DataArray type=\"Float64\" format=\"appended\" offset=\"0\"/></Points>"
+      "</Piece></UnstructuredGrid><AppendedData encoding=\"raw\">_" +
+      std::string(reinterpret_cast<const char*>(header), sizeof header) + "</AppendedData></VTKFile>";
+  EXPECT_THAT(fault_of(packed, "t.vtu"), testing::HasSubstr("fewer bytes than its header states"));
 }
 
 }  // namespace

@@ -200,7 +200,10 @@ class VtuReader {
       return fault(array, "fewer bytes than its header states");
     const std::uint64_t block = header(head, 1), last = header(head, 2);
     std::uint64_t packed = 0;
-    for (std::uint64_t i = 0; i < blocks; ++i) packed += header(head, 3 + static_cast<std::size_t>(i));
+    for (std::uint64_t i = 0; i < blocks; ++i) {
+      if (__builtin_add_overflow(packed, header(head, 3 + static_cast<std::size_t>(i)), &packed))
+        return fault(array, "fewer bytes than its header states");
+    }
     std::string data;
     if (block > most_bytes || !take(source, is_base64, at, packed, data))
       return fault(array, "fewer bytes than its header states");

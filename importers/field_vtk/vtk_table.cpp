@@ -25,9 +25,9 @@ bool add_cells(const Content& content, fields::Table& table, fields::FileCursor&
     const bool is_tetra = type == tetra || type == quadratic_tetra;
     if (!is_tetra && type != hexa && type != quadratic_hexa && type != triquadratic_hexa) continue;
     const std::size_t corners = is_tetra ? 4 : 8;
-    const std::int64_t first = content.offsets[c];
-    if (first < 0 || content.offsets[c + 1] - first < static_cast<std::int64_t>(corners) ||
-        content.offsets[c + 1] > static_cast<std::int64_t>(content.connectivity.size()))
+    const std::int64_t first = content.offsets[c], end = content.offsets[c + 1];
+    if (first < 0 || end > static_cast<std::int64_t>(content.connectivity.size()) || end < first ||
+        end - first < static_cast<std::int64_t>(corners))
       return in.expected("cells with enough points");
     for (std::size_t i = 0; i < corners; ++i) {
       const std::int64_t point = content.connectivity[static_cast<std::size_t>(first) + i];
@@ -54,8 +54,9 @@ std::optional<fields::Table> make_table(Content content, const std::string& want
   fields::Table table;
   for (const char* name : {"x", "y", "z"}) table.columns.push_back({name, {}});
   for (const Array& array : content.arrays) {
-    if (array.values.size() != rows * array.width) {
-      in.expected(std::to_string(rows * array.width) + " numbers in the array '" + array.name + "'");
+    // Not as a product: widths of any size may be stated.
+    if (array.values.size() % rows != 0 || array.values.size() / rows != array.width) {
+      in.expected(std::to_string(array.width) + " numbers for each point in the array '" + array.name + "'");
       return std::nullopt;
     }
     for (std::size_t i = 0; i < array.width; ++i)

@@ -263,5 +263,11 @@ TEST(ColumnName, IsOneThatExpressionsCanUse) {
   EXPECT_EQ(column_name(""), "_");
 }
 
+TEST(Layout, SizesBeyondAllFilesAreTold) {
+  EXPECT_EQ(Records::bytes_needed({.offset = 16, .rows = 3, .columns = 4}), 16 + 3 * 4 * 8U);
+  EXPECT_FALSE(Records::bytes_needed({.rows = 1, .columns = (std::size_t{1} << 61) + 1}));
+  EXPECT_FALSE(Records::bytes_needed({.rows = std::size_t{1} << 62, .columns = 4}));
+}
+
 }  // namespace
 }  // namespace meso::fields

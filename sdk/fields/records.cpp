@@ -61,10 +61,10 @@ Records Records::of(std::vector<double> values, std::size_t columns) {
 
 std::optional<std::uint64_t> Records::bytes_needed(const RecordLayout& layout) {
   assert(layout.rows > 0 && layout.columns > 0);
-  std::uint64_t end = 0;
-  if (__builtin_mul_overflow(stride_of(layout), std::uint64_t{layout.rows} - 1, &end) ||
-      __builtin_add_overflow(end, layout.columns * sizeof(double), &end) ||
-      __builtin_add_overflow(end, layout.offset, &end) || end >> 63 != 0)
+  std::uint64_t end = 0, row = 0;
+  if (__builtin_mul_overflow(layout.columns, sizeof(double), &row) ||
+      __builtin_mul_overflow(stride_of(layout), std::uint64_t{layout.rows} - 1, &end) ||
+      __builtin_add_overflow(end, row, &end) || __builtin_add_overflow(end, layout.offset, &end) || end >> 63 != 0)
     return std::nullopt;
   return end;
 }
