@@ -32,7 +32,7 @@ std::optional<TriangleMesh> import_mesh(const eval::ImportShape& import, const R
         brep::read_step(import.file, {.relative_deflection = import_deflection, .angle_rad = import_angle}, run, sink);
     return body ? std::optional(triangle_mesh(*body)) : std::nullopt;
   }
-  return read_surface_mesh_file(import.file.string(), sink);
+  return read_surface_mesh_file(import.file.string(), sink, run);
 }
 
 /// What is built: one field, and what is known of it.

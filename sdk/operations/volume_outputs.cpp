@@ -113,7 +113,7 @@ std::optional<VolumeReport> run_volume(const sdf::Program& program, const Volume
   if (!check_volume_options(program.output, options, sink)) return std::nullopt;
   const auto load = [&](const std::string& path,
                         DiagnosticSink& told) -> std::shared_ptr<const implicit::ExternalField> {
-    const auto mesh = read_surface_mesh_file(path, told);
+    const auto mesh = read_surface_mesh_file(path, told, options.run);
     return mesh ? implicit::MeshField::make(*mesh, path, options.run, told) : nullptr;
   };
   const auto field = sdf::build_field(program, load, sink);
