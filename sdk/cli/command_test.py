@@ -229,6 +229,9 @@ class ExitCodes(CommandTest):
             out = self.out(name)
             self.expect(0, "convert", field, out, "--spacing", "0.2mm", says="ENGINE_CHOSEN")
             self.assertGreater(pathlib.Path(out).stat().st_size, 1000)
+        before = pathlib.Path(self.out("a.ply")).read_bytes()
+        self.expect(5, "convert", field, self.out("a.ply"), "--samples", "2,2,2", says="GEOMETRY_EMPTY")
+        self.assertEqual(pathlib.Path(self.out("a.ply")).read_bytes(), before)
         solid = self.file("solid.meso", document())
         report = json.loads(self.expect(0, "convert", solid, self.out("b.ply"), "--engine", "implicit", "--samples", "60^3",
                                         "--measure", "--json").stdout)

@@ -76,6 +76,10 @@ bool write_mesh_file(const implicit::GridSource& source, const fs::path& out, co
   const std::size_t errors = sink.error_count();
   const auto contoured =
       implicit::contour(source, options.measure ? static_cast<MeshSink&>(measured) : *writer, {}, options.run, sink);
+  if (contoured && contoured->triangles == 0) {  // what stands at `out` stays
+    sink.report({.code = Code::geometry_empty, .args = {options.part}});
+    return false;
+  }
   if (sink.error_count() > errors || !file->commit(sink) || !contoured) return false;
   report.triangles = contoured->triangles;
   const implicit::Grid& grid = source.grid();
@@ -125,12 +129,6 @@ std::optional<ConvertReport> make_mesh(const eval::Evaluation& evaluation, const
   report.spacing_mm = std::max({grid->spacing(0), grid->spacing(1), grid->spacing(2)});
   report.seconds.realise = watch.lap();
   if (!write_mesh_file(*source, out, options, write, report, sink)) return std::nullopt;
-  if (report.triangles == 0) {
-    sink.report({.code = Code::geometry_empty, .args = {options.part}});
-    std::error_code ignored;
-    fs::remove(out, ignored);
-    return std::nullopt;
-  }
   report.seconds.write = watch.lap();
   report.seconds.total = watch.total();
   return report;
