@@ -66,9 +66,10 @@ std::optional<Affine> map_of(const Geom_BSplineSurface& surface) {
 double step_for(Vec3 radii, double deflection, double angle) {
   // A triangle spans at most a diagonal of sqrt(2) steps, and its chord is 1 - cos(half of that) below the sphere. The
   // image turns faster than the sphere where it is sharpest, by no more than the ratio of its longest half axis to its
-  // shortest.
+  // shortest. That ratio counts squared in triangles for a rim that few of them are near: a flat ellipsoid keeps to the
+  // angle only as far as sixteen times the triangles that the deflection asks for.
   const double by_deflection = std::sqrt(2) * std::acos(std::max(0.0, 1 - deflection / radii.x));
-  return std::min({by_deflection, angle * radii.z / radii.x, pi / 4});
+  return std::min({by_deflection, std::max(angle * radii.z / radii.x, by_deflection / 4), pi / 4});
 }
 
 }  // namespace

@@ -7,10 +7,9 @@
 #include "meso/base/number.hpp"
 #include "meso/brep/audit.hpp"
 #include "meso/brep/read_step.hpp"
-#include "meso/import_surface_mesh/read_stl.hpp"
+#include "meso/import_surface_mesh/read_surface_mesh.hpp"
 #include "meso/mesh/audit_mesh.hpp"
 #include "meso/mesh/self_contact.hpp"
-#include "read_mesh.hpp"
 
 namespace meso::operations {
 namespace {
@@ -34,8 +33,9 @@ void check_self_contact(VerifyReport& report, const TriangleMesh& mesh) {
 
 }  // namespace
 
-std::optional<VerifyReport> audit_mesh_file(const std::filesystem::path& file, DiagnosticSink& sink) {
-  const auto mesh = read_mesh_file(file, sink);
+std::optional<VerifyReport> audit_mesh_file(const std::filesystem::path& file, const RunOptions& run,
+                                            DiagnosticSink& sink) {
+  const auto mesh = read_surface_mesh_file(file, sink, run);
   if (!mesh) return std::nullopt;
   const MeshAudit audit = audit_mesh(*mesh);
   VerifyReport report{.closed = audit.watertight(), .triangles = audit.triangles};

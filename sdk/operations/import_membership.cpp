@@ -7,9 +7,9 @@
 #include "file_extension.hpp"
 #include "meso/brep/measure.hpp"
 #include "meso/brep/read_step.hpp"
+#include "meso/import_surface_mesh/read_surface_mesh.hpp"
 #include "meso/membership/crossings.hpp"
 #include "meso/operations/convert.hpp"
-#include "read_mesh.hpp"
 
 namespace meso::operations {
 namespace {
@@ -38,7 +38,7 @@ std::optional<membership::ImportedSolid> ImportedBodies::read(const eval::Import
 }
 
 std::optional<TriangleMesh> ImportedBodies::triangles(const eval::ImportShape& import) {
-  if (lower_extension(import.file) == ".stl") return read_stl_file(import.file, sink_);
+  if (lower_extension(import.file) == ".stl") return read_surface_mesh_file(import.file, sink_, run_);
   const auto body =
       brep::read_step(import.file, {.relative_deflection = relative_deflection, .angle_rad = 0.1}, run_, sink_);
   if (!body) return {};

@@ -2,44 +2,22 @@
 #include "meso/operations/load_mesh.hpp"
 
 #include <algorithm>
-#include <cerrno>
-#include <cstring>
-#include <fstream>
 #include <iterator>
-#include <system_error>
 
 #include "file_extension.hpp"
 #include "meso/brep/read_step.hpp"
-#include "meso/import_surface_mesh/read_stl.hpp"
 #include "meso/import_surface_mesh/read_surface_mesh.hpp"
 #include "read_mesh.hpp"
 
 namespace meso::operations {
-
-std::optional<TriangleMesh> read_stl_file(const std::filesystem::path& file, DiagnosticSink& sink) {
-  std::error_code error;
-  if (std::filesystem::is_directory(file, error)) error = std::make_error_code(std::errc::is_a_directory);
-  std::ifstream in(file, std::ios::binary);
-  if (!in && !error) error = {errno, std::generic_category()};
-  if (error) {
-    sink.report({.code = Code::file_not_found, .args = {file.string(), error.message()}});
-    return std::nullopt;
-  }
-  const std::string bytes((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
-  return read_stl(bytes, file.string(), sink);
-}
 
 bool is_mesh_file(const std::filesystem::path& file) {
   static constexpr std::string_view extensions[] = {".stl", ".ply", ".obj", ".off", ".vtk"};
   return std::ranges::find(extensions, lower_extension(file)) != std::end(extensions);
 }
 
-std::optional<TriangleMesh> read_mesh_file(const std::filesystem::path& file, DiagnosticSink& sink) {
-  return lower_extension(file) == ".stl" ? read_stl_file(file, sink) : read_surface_mesh_file(file, sink);
-}
-
 std::optional<TriangleMesh> load_mesh(const std::filesystem::path& file, MakeOptions options, DiagnosticSink& sink) {
-  if (is_mesh_file(file)) return read_mesh_file(file, sink);
+  if (is_mesh_file(file)) return read_surface_mesh_file(file, sink, options.run);
   const std::string extension = lower_extension(file);
   if (extension == ".step" || extension == ".stp") {
     const auto body = brep::read_step(

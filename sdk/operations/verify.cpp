@@ -138,7 +138,7 @@ std::optional<VerifyReport> verify(const fs::path& file, const MakeOptions& opti
   const std::string extension = lower_extension(file);
   std::optional<VerifyReport> report;
   if (is_mesh_file(file)) {
-    report = audit_mesh_file(file, sink);
+    report = audit_mesh_file(file, options.run, sink);
   } else if (extension == ".step" || extension == ".stp") {
     report = audit_step(file, options.run, sink);
   } else {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <cmath>
+#include <limits>
 
 #include "meso/base/number.hpp"
 #include "meso/export_slices/slice_files.hpp"
@@ -145,12 +146,20 @@ bool write_whole(VolumeJob& job, const SlicePlan& plan, std::uint64_t plane, std
   return file->commit(job.sink) && written;
 }
 
+/// Rows of samples are counted in 32 bits.
+bool countable(const VolumeJob& job, const std::array<std::int32_t, 3>& cells, int subsamples) {
+  const std::int64_t most = std::numeric_limits<std::int32_t>::max();
+  if (std::ranges::all_of(cells, [&](std::int64_t n) { return n * subsamples <= most; })) return true;
+  return job.refuse("more than " + std::to_string(most) + " samples along an axis; take fewer voxels or --subsamples");
+}
+
 }  // namespace
 
 bool write_voxels(VolumeJob& job) {
   const std::string value = job.options.voxels.value_or("occupancy");
   const bool distance = value == "distance";
   const int m = job.options.subsamples.value_or(value == "density" ? 4 : 1);
+  if (!countable(job, job.samples, m)) return false;
   const implicit::VoxelGrid voxels{.box = job.box, .cells = job.samples, .subsamples = {m, m, m}};
   const auto source = job.source(job.field, voxels.samples());
   if (!source) return false;
@@ -192,6 +201,7 @@ bool write_slices(VolumeJob& job) {
   job.report.files = static_cast<std::uint64_t>(plan->count);
   if (lower_extension(job.path) == ".png") {
     const int m = job.options.subsamples.value_or(4);
+    if (!countable(job, nodes, m)) return false;
     const implicit::VoxelGrid pixels{.box = box, .cells = nodes, .subsamples = {m, m, 1}};
     const auto source = job.source(field, pixels.samples());
     PngStack stack([&](std::uint32_t plane, std::string_view bytes) { return write_whole(job, *plan, plane, bytes); });
