@@ -26,7 +26,8 @@ int finish(Run& run, const operations::FieldReport& report) {
   }
   json["columns"] = Json::array();
   if (!run.flags.json)
-    fmt::print("{} records, {} tetrahedra, {} hexahedra\n", report.records, report.tetra, report.hexa);
+    fmt::print("{} records{}{}\n", report.records, report.tetra > 0 ? fmt::format(", {} tetrahedra", report.tetra) : "",
+               report.hexa > 0 ? fmt::format(", {} hexahedra", report.hexa) : "");
   for (const auto& c : report.columns) {
     json["columns"].push_back({{"name", c.name},
                                {"unit", c.unit},
@@ -37,7 +38,7 @@ int finish(Run& run, const operations::FieldReport& report) {
     if (run.flags.json) continue;
     fmt::print("{:<16} {:>14.6g} to {:<14.6g} {}", c.name, c.statistics.min, c.statistics.max, c.unit);
     if (c.statistics.nan + c.statistics.infinite > 0)
-      fmt::print("{} NaN, {} infinite, first in record {}", c.statistics.nan, c.statistics.infinite,
+      fmt::print("  {} NaN, {} infinite, first in record {}", c.statistics.nan, c.statistics.infinite,
                  c.statistics.first_not_finite);
     fmt::print("\n");
   }

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <fstream>
 #include <system_error>
+#include <type_traits>
 
 #include "measured_mesh_sink.hpp"
 #include "meso/base/number.hpp"
@@ -126,6 +127,14 @@ std::unique_ptr<implicit::GridSource> Job::source_on(const implicit::Grid& grid)
   return implicit::compile(field_->term(), grid, {.strict_math = options_.strict_math}, options_.run, sink_);
 }
 
+/// The step of the largest coordinate in a box, as a float.
+double float_step(const Box3& box) {
+  double reach = 0;
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    reach = std::max({reach, std::abs(box.min[axis]), std::abs(box.max[axis])});
+  return std::nextafter(static_cast<float>(reach), HUGE_VALF) - static_cast<float>(reach);
+}
+
 template <class Real>
 bool Job::contour_into(MeshSink& writer) {
   const auto source = source_on(report_.grid);
@@ -133,7 +142,10 @@ bool Job::contour_into(MeshSink& writer) {
   MeasuredMeshSink<Real> measured(writer);
   const auto contoured =
       implicit::contour(*source, options_.measure ? static_cast<MeshSink&>(measured) : writer,
-                        {.polish = options_.polish, .collapse_slivers = options_.no_slivers}, options_.run, sink_);
+                        {.polish = options_.polish,
+                         .coordinate_step = std::is_same_v<Real, float> ? float_step(report_.grid.box) : 0,
+                         .collapse_slivers = options_.no_slivers},
+                        options_.run, sink_);
   if (!contoured) return false;
   report_.points = contoured->points;
   report_.triangles = contoured->triangles;
@@ -206,8 +218,7 @@ bool Job::warn_of_rounding(const Output& output) const {
   double reach = 0;
   for (std::size_t axis = 0; axis < 3; ++axis)
     reach = std::max({reach, std::abs(grid.box.min[axis]), std::abs(grid.box.max[axis])});
-  const double step = std::nextafter(static_cast<float>(reach), HUGE_VALF) - static_cast<float>(reach),
-               spacing = std::min({grid.spacing(0), grid.spacing(1), grid.spacing(2)});
+  const double step = float_step(grid.box), spacing = std::min({grid.spacing(0), grid.spacing(1), grid.spacing(2)});
   if (step <= 4e-3 * spacing) return false;
   sink_.report({.code = Code::sdf_far,
                 .args = {format_number(reach), format_number(step), program_.output, format_number(spacing)}});

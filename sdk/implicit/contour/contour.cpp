@@ -146,7 +146,7 @@ bool Contouring::vertex_pass() {
   OrderedOutput output = this->output(&MeshSink::write_points);
   pulse_.begin("vertices");
   return for_each_brick(
-      output, [&] { return VertexPass(layout_, source_, sink_, options_.polish, [&] { return pulse_.check(); }); },
+      output, [&] { return VertexPass(layout_, source_, sink_, options_, [&] { return pulse_.check(); }); },
       [&](VertexPass& pass, std::size_t brick, ByteBuffer& bytes) {
         records_[brick] = pass.run(first_plane(brick), last_plane(brick), bytes, [&] {
           output.offer(brick, bytes);

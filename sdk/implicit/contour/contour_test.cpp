@@ -201,6 +201,27 @@ TEST(Contour, PolishesVerticesOntoTheField) {
   }
 }
 
+TEST(Contour, PolishedVerticesStayApartAsFloats) {
+  // The walls of the box stand in planes of nodes, where vertices would run into each other.
+  const Grid grid{.box = {{0, 0, 0}, {30, 20, 10}}, .nodes = {61, 41, 21}};
+  const auto field = [](Vec3 p) {
+    const double wall = std::max({std::fabs(p.x - 15) - 14, std::fabs(p.y - 10) - 9, std::fabs(p.z - 5) - 4});
+    return std::max(wall, gyroid(0.25 * p));
+  };
+  const auto folded = [&](double step) {
+    const TriangleMesh mesh = contour_of(FunctionSource(grid, field), {.polish = true, .coordinate_step = step}).mesh;
+    const auto rounded = [&](std::uint32_t i) {
+      const Vec3 p = mesh.points[i];
+      return Vec3{static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)};
+    };
+    return std::ranges::count_if(mesh.triangles, [&](const auto& t) {
+      return norm(cross(rounded(t[1]) - rounded(t[0]), rounded(t[2]) - rounded(t[0]))) == 0;
+    });
+  };
+  EXPECT_GT(folded(0), 0);
+  EXPECT_EQ(folded(0x1p-19), 0);
+}
+
 TEST(Contour, PolishFindsTheBorderOfTheDefined) {
   const auto half_ball = [](Vec3 p) { return p.x > 0.123 ? not_a_number : norm(p) - 0.8; };
   const Grid grid = cube(40);

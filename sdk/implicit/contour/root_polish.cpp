@@ -41,11 +41,11 @@ double RootPolish::next(const Edge& e, int round) {
 }
 
 void RootPolish::solve(GridSampler& sampler, std::vector<Vec3>& results) {
-  // A vertex in a node would fold its triangles up.
-  constexpr double margin = 2 * accuracy;
   for (int round = 0; !edges_.empty(); ++round) {
     std::erase_if(edges_, [&](const Edge& e) {
       if (std::fabs(e.b - e.a) > 2 * accuracy) return false;
+      // A vertex in a node would fold its triangles up.
+      const double margin = std::clamp(2 * coordinate_step_ / std::fabs(e.step), 2 * accuracy, 0.25);
       results[e.result] = at(e, std::clamp(linear_root(e), margin, 1 - margin));
       return true;
     });

@@ -15,6 +15,9 @@ namespace meso::implicit {
 
 class RootPolish {
  public:
+  /// See ContourOptions::coordinate_step.
+  explicit RootPolish(double coordinate_step) : coordinate_step_(coordinate_step) {}
+
   /// The distance from the root, in lengths of the edge, that is always reached.
   static constexpr double accuracy = 2.5e-7;
 
@@ -36,6 +39,7 @@ class RootPolish {
   static double linear_root(const Edge& e);
   static Vec3 at(const Edge& e, double t);
 
+  double coordinate_step_;
   std::vector<Edge> edges_;
   std::vector<double> t_, values_;
   std::vector<Vec3> points_;

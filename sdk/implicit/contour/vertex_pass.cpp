@@ -36,13 +36,14 @@ unsigned corners_inside(const CellRows& rows, std::size_t b) {
 
 }  // namespace
 
-VertexPass::VertexPass(const Layout& layout, const GridSource& source, const MeshSink& sink, bool polish,
-                       std::function<bool()> go_on)
+VertexPass::VertexPass(const Layout& layout, const GridSource& source, const MeshSink& sink,
+                       const ContourOptions& options, std::function<bool()> go_on)
     : layout_(layout),
       sampler_(source.sampler()),
       sink_(sink),
       signs_only_(source.signs_only()),
-      polish_(polish),
+      polish_(options.polish),
+      roots_(options.coordinate_step),
       rows_(layout),
       x_(layout.nx + 1),
       y_(layout.nx + 1),

@@ -10,6 +10,7 @@
 #include "edge_end_sampler.hpp"
 #include "joined_faces.hpp"
 #include "meso/base/mesh_sink.hpp"
+#include "meso/implicit/contour.hpp"
 #include "meso/implicit/grid_source.hpp"
 #include "root_polish.hpp"
 #include "sample_rows.hpp"
@@ -20,7 +21,7 @@ namespace meso::implicit {
 class VertexPass {
  public:
   /// `go_on` is asked within long work: false ends it.
-  VertexPass(const Layout& layout, const GridSource& source, const MeshSink& sink, bool polish,
+  VertexPass(const Layout& layout, const GridSource& source, const MeshSink& sink, const ContourOptions& options,
              std::function<bool()> go_on);
 
   /// Planes [first, last) of 0 ... nodes; the last of these is the layer above the grid. Calls `after_row` now and
