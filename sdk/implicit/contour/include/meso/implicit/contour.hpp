@@ -31,8 +31,8 @@ struct ContourOptions {
   /// six more evaluations of the field each.
   bool polish = false;
   /// The step of the coordinates as they are written, where that is coarse: polished vertices keep two such steps away
-  /// from the grid's nodes, lest rounding folds up the triangles around one. In the grid's unit; floats: the step of the
-  /// largest coordinate.
+  /// from the grid's nodes, lest rounding folds up the triangles around one. In the grid's unit; floats: the step of
+  /// the largest coordinate.
   double coordinate_step = 0;
   /// Collapses edges shorter than a quarter of the spacing where neither the shape nor the box's planes suffer, which
   /// removes slivers. Holds the mesh in memory: about 120 bytes a triangle; 2 us each.
