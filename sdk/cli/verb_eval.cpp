@@ -61,6 +61,7 @@ std::string csv_header(const CellStream& cells) {
     for (const FillRange& r : p.fill->ranges) out += "," + (r.index ? r.index->text : "n_" + r.axis.text);
   }
   if (p.list) out += "," + (p.list->index ? p.list->index->text : std::string("n"));
+  if (p.scatter) out += "," + (p.scatter->index ? p.scatter->index->text : std::string("n"));
   for (int r = 1; r <= 3; ++r) {
     for (int c = 1; c <= 4; ++c) out += fmt::format(",m{}{}", r, c);
   }
