@@ -47,17 +47,30 @@ std::vector<std::string> texts_of(hid_t object, const char* attribute) {
   return result;
 }
 
+/// A file by its name; bytes in memory as the image of one, which the library copies.
+Handle open_source(const Resource& source) {
+  if (source.memory() == nullptr) return {H5Fopen(source.name().c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose};
+  const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
+  constexpr std::size_t growth = 1 << 16;
+  H5Pset_fapl_core(access.id(), growth, false);
+  std::string& image = const_cast<std::string&>(*source.memory());  // the interface is not const, the library is
+  H5Pset_file_image(access.id(), image.data(), image.size());
+  return {H5Fopen(source.name().c_str(), H5F_ACC_RDONLY, access.id()), H5Fclose};
+}
+
+const char* why_not_open(const Resource& source) {
+  static constexpr std::string_view signature("\x89HDF\r\n\x1a\n", 8);
+  std::string error;
+  const auto bytes = ResourceBytes::open(source, error);
+  if (!bytes) return source.exists() ? "it cannot be opened" : "no such file";
+  return bytes->view().starts_with(signature) ? "it is damaged or cut short" : "it is no HDF5 file";
+}
+
 class Hdf5Reader {
  public:
-  Hdf5Reader(const std::filesystem::path& file, const RunOptions& run, DiagnosticSink& sink)
-      : name_(file.string()),
-        run_(run),
-        sink_(sink),
-        file_(H5Fopen(file.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose) {
-    if (!file_)
-      report(Code::import_unreadable, {name_, !std::filesystem::exists(file) ? "no such file"
-                                              : H5Fis_hdf5(file.c_str()) > 0 ? "it is damaged or cut short"
-                                                                             : "it is no HDF5 file"});
+  Hdf5Reader(const Resource& file, const RunOptions& run, DiagnosticSink& sink)
+      : source_(file), name_(file.name().string()), run_(run), sink_(sink), file_(open_source(file)) {
+    if (!file_) report(Code::import_unreadable, {name_, why_not_open(file)});
   }
 
   std::optional<fields::Table> table(const std::string& paths) {
@@ -200,7 +213,7 @@ class Hdf5Reader {
     const haddr_t offset = H5Dget_offset(sets_[0].set.id());
     if (offset == HADDR_UNDEF) return std::nullopt;
     std::string error;
-    auto file = fields::MappedFile::open(name_, error);
+    auto file = ResourceBytes::open(source_, error);
     if (!file) return std::nullopt;
     return fields::Records::map(std::move(file),
                                 {.offset = offset, .rows = sets_[0].rows, .columns = sets_[0].columns});
@@ -236,6 +249,7 @@ class Hdf5Reader {
     return (rows + chunk[0] - 1) / chunk[0] * chunk[0];
   }
 
+  Resource source_;
   std::string name_;
   const RunOptions& run_;
   DiagnosticSink& sink_;
@@ -246,15 +260,14 @@ class Hdf5Reader {
 
 }  // namespace
 
-std::optional<fields::Table> read_field_hdf5(const std::filesystem::path& file, const std::string& path,
-                                             const RunOptions& run, DiagnosticSink& sink) {
+std::optional<fields::Table> read_field_hdf5(const Resource& file, const std::string& path, const RunOptions& run,
+                                             DiagnosticSink& sink) {
   const hdf5::Session session;
   return Hdf5Reader(file, run, sink).table(path);
 }
 
-std::optional<std::vector<std::int64_t>> read_field_hdf5_integers(const std::filesystem::path& file,
-                                                                  const std::string& path, const RunOptions& run,
-                                                                  DiagnosticSink& sink) {
+std::optional<std::vector<std::int64_t>> read_field_hdf5_integers(const Resource& file, const std::string& path,
+                                                                  const RunOptions& run, DiagnosticSink& sink) {
   const hdf5::Session session;
   return Hdf5Reader(file, run, sink).integers(path);
 }

@@ -94,11 +94,11 @@ std::optional<TriangleMesh> read_surface_mesh(std::string_view bytes, const std:
   return mesh;
 }
 
-std::optional<TriangleMesh> read_surface_mesh_file(const std::filesystem::path& file, DiagnosticSink& sink,
-                                                   const RunOptions& run) {
-  const std::optional<std::string> bytes = contents(file, run, sink);
+std::optional<TriangleMesh> read_surface_mesh_file(const Resource& file, DiagnosticSink& sink, const RunOptions& run) {
+  if (file.memory() != nullptr) return read_surface_mesh(*file.memory(), file.name().string(), sink);
+  const std::optional<std::string> bytes = contents(file.name(), run, sink);
   if (!bytes) return {};
-  return read_surface_mesh(*bytes, file.string(), sink);
+  return read_surface_mesh(*bytes, file.name().string(), sink);
 }
 
 }  // namespace meso

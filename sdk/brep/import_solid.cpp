@@ -8,8 +8,7 @@
 #include <algorithm>
 #include <cctype>
 #include <charconv>
-#include <fstream>
-#include <iterator>
+#include <istream>
 #include <mutex>
 #include <unordered_map>
 
@@ -31,9 +30,10 @@ std::string lower_extension(const path& file) {
 
 bool hash_holds(const eval::ImportShape& import, ElementId where, const SolidContext& context) {
   if (!import.sha256) return true;
-  const auto actual = sha256_of_file(import.file);
+  const auto actual = sha256_of(import.file);
   if (actual == import.sha256) return true;
-  context.report(Code::import_changed, where, {import.file.string(), actual.value_or("(unreadable)"), *import.sha256});
+  context.report(Code::import_changed, where,
+                 {import.file.name().string(), actual.value_or("(unreadable)"), *import.sha256});
   return false;
 }
 
@@ -43,35 +43,46 @@ std::mutex& step_mutex() {
   return mutex;
 }
 
+/// A stream that reads where the bytes are.
+class ViewBuffer final : public std::streambuf {
+ public:
+  explicit ViewBuffer(std::string_view bytes) {
+    char* begin = const_cast<char*>(bytes.data());  // the interface is not const, reading is
+    setg(begin, begin, begin + bytes.size());
+  }
+};
+
 /// Null if no root could be transferred.
-TopoDS_Shape read_step_shape(const path& file) {
+TopoDS_Shape read_step_shape(const std::string& name, std::string_view text) {
   const std::scoped_lock lock(step_mutex());
   Message::DefaultMessenger()->ChangePrinters().Clear();
   STEPControl_Reader reader;
   Interface_Static::SetCVal("xstep.cascade.unit", "MM");
-  if (reader.ReadFile(file.c_str()) != IFSelect_RetDone || reader.TransferRoots() == 0) return {};
+  ViewBuffer buffer(text);
+  std::istream stream(&buffer);
+  if (reader.ReadStream(name.c_str(), stream) != IFSelect_RetDone || reader.TransferRoots() == 0) return {};
   return reader.OneShape();
 }
 
-std::optional<Solids> read_step(const path& file, ElementId where, const SolidContext& context) {
-  std::error_code error;
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream || !std::filesystem::is_regular_file(file, error)) {
-    context.report(Code::import_unreadable, where, {file.string(), "it cannot be opened"});
+std::optional<Solids> read_step(const Resource& file, ElementId where, const SolidContext& context) {
+  const std::string name = file.name().string();
+  std::string error;
+  const auto bytes = ResourceBytes::open(file, error);
+  if (!bytes) {
+    context.report(Code::import_unreadable, where, {name, "it cannot be opened"});
     return {};
   }
-  const std::string text{std::istreambuf_iterator<char>(stream), {}};
-  if (has_bad_number(text)) {
-    context.report(Code::import_unreadable, where, {file.string(), "it has a number that is not finite"});
+  if (has_bad_number(bytes->view())) {
+    context.report(Code::import_unreadable, where, {name, "it has a number that is not finite"});
     return {};
   }
-  if (const auto fault = reference_fault(text)) {
-    context.report(Code::import_unreadable, where, {file.string(), *fault});
+  if (const auto fault = reference_fault(bytes->view())) {
+    context.report(Code::import_unreadable, where, {name, *fault});
     return {};
   }
-  const TopoDS_Shape shape = read_step_shape(file);
+  const TopoDS_Shape shape = read_step_shape(name, bytes->view());
   if (shape.IsNull()) {
-    context.report(Code::import_unreadable, where, {file.string(), "it is not a complete STEP file"});
+    context.report(Code::import_unreadable, where, {name, "it is not a complete STEP file"});
     return {};
   }
   return solids_of(shape);
@@ -158,18 +169,18 @@ std::optional<std::string> reference_fault(std::string_view step) {
 std::optional<Solids> import_solids(const eval::ImportShape& import, const Affine& map, ElementId where,
                                     const SolidContext& context) {
   if (!hash_holds(import, where, context)) return {};
-  const std::string extension = lower_extension(import.file);
+  const std::string extension = lower_extension(import.file.name());
   std::optional<Solids> read;
   if (extension == ".step" || extension == ".stp") {
     read = read_step(import.file, where, context);
   } else if (extension == ".stl") {
     read = read_stl_solids(import.file, where, context);
   } else {
-    context.report(Code::import_no_reader, where, {import.file.string()});
+    context.report(Code::import_no_reader, where, {import.file.name().string()});
   }
   if (!read) return {};
   if (const auto fault = fault_of(*read)) {
-    context.report(Code::import_not_closed, where, {import.file.string(), *fault});
+    context.report(Code::import_not_closed, where, {import.file.name().string(), *fault});
     return {};
   }
   // Solids of one body may overlap; what follows counts on solids that do not.

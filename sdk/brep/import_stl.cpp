@@ -2,8 +2,6 @@
 #include "import_stl.hpp"
 
 #include <BRepBuilderAPI_MakeVertex.hxx>
-#include <fstream>
-#include <iterator>
 #include <map>
 #include <numeric>
 
@@ -74,14 +72,15 @@ TopoDS_Solid solid_of(const TopoDS_Shell& shell) {
 
 }  // namespace
 
-std::optional<Solids> read_stl_solids(const std::filesystem::path& file, ElementId where, const SolidContext& context) {
-  std::ifstream stream(file, std::ios::binary);
-  const std::string bytes{std::istreambuf_iterator<char>(stream), {}};
-  if (!stream) {
-    context.report(Code::import_unreadable, where, {file.string(), "it cannot be opened"});
+std::optional<Solids> read_stl_solids(const Resource& file, ElementId where, const SolidContext& context) {
+  const std::string name = file.name().string();
+  std::string error;
+  const auto bytes = ResourceBytes::open(file, error);
+  if (!bytes) {
+    context.report(Code::import_unreadable, where, {name, "it cannot be opened"});
     return {};
   }
-  const auto mesh = read_stl(bytes, file.string(), context.sink);
+  const auto mesh = read_stl(bytes->view(), name, context.sink);
   if (!mesh) return {};
   std::size_t count = 0;
   const std::vector<std::size_t> surfaces = surfaces_of(*mesh, count);
@@ -93,7 +92,7 @@ std::optional<Solids> read_stl_solids(const std::filesystem::path& file, Element
     const TopoDS_Face face = facets.face(mesh->triangles[i]);
     if (face.IsNull()) {
       context.report(Code::import_not_closed, where,
-                     {file.string(), "triangle " + std::to_string(i + 1) + " has no area"});
+                     {name, "triangle " + std::to_string(i + 1) + " has no area"});
       return {};
     }
     builder.Add(shells[surfaces[i]], face);

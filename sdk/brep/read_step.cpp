@@ -7,9 +7,9 @@
 
 namespace meso::brep {
 
-std::optional<Body> read_step(const std::filesystem::path& file, const ReadStepOptions& options, const RunOptions& run,
+std::optional<Body> read_step(const Resource& file, const ReadStepOptions& options, const RunOptions& run,
                               DiagnosticSink& sink) {
-  const SourceMap source(file.string(), {});
+  const SourceMap source(file.name().string(), {});
   const auto solids = import_solids({.file = file}, {}, {}, {.source = source, .run = run, .sink = sink});
   if (!solids) return std::nullopt;
   TopoDS_Compound all;

@@ -83,8 +83,10 @@ class Run {
  private:
   [[nodiscard]] const Diagnostic* first_error() const;
   void print_diagnostics();
+  void explain_stop();
   [[nodiscard]] std::optional<double> positive_value(const std::string& text, LengthUnit unit, const char* flag);
   std::optional<Progress> progress_;
+  std::optional<RunOptions> options_;
 };
 
 [[nodiscard]] Json diagnostics_json(const DiagnosticSink& sink);

@@ -5,7 +5,7 @@
 #include <cstdio>
 
 #include "meso/base/output_file.hpp"
-#include "meso/xml/read.hpp"
+#include "meso/package/open_document.hpp"
 #include "meso/xml/write.hpp"
 #include "run.hpp"
 #include "stop.hpp"
@@ -16,7 +16,7 @@ namespace {
 int canonical(Run& run, const std::string& in, const std::string& out) {
   if (out.empty()) run.refuse_without_effect({{"--no-clobber", run.flags.no_clobber}}, "with an output file");
   if (run.sink.has_errors()) return run.finish();
-  const auto read = read_document_file(in, run.sink);
+  const auto read = open_document(in, {}, run.sink);
   if (!read) return run.finish();
   const std::string bytes = canonical_document(read->document);
   if (out.empty()) {

@@ -8,6 +8,7 @@
 #include "make_options.hpp"
 #include "meso/export_svg/write_plot_svg.hpp"
 #include "meso/operations/compare.hpp"
+#include "meso/package/referenced_files.hpp"
 #include "run.hpp"
 #include "stop.hpp"
 
@@ -70,7 +71,7 @@ std::optional<Series> parse_series(const std::string& text, Run& run) {
   return std::nullopt;
 }
 
-bool write_text(const fs::path& file, const std::string& text, Run& run) {
+bool write_text(const fs::path& file, std::string_view text, Run& run) {
   clean_on_stop(file);
   auto out = OutputFile::create(file.string(), run.existing_file(), run.sink);
   if (out) (void)out->write(text);  // commit() reports what went wrong
@@ -100,20 +101,18 @@ std::optional<std::vector<fs::path>> write_variants(const fs::path& document, co
 bool copy_references(const fs::path& document, const fs::path& folder, Run& run) {
   const auto checked = run.open(document.string());
   if (!checked) return false;
-  const fs::path base = fs::weakly_canonical(checked->folder().empty() ? fs::path(".") : checked->folder());
-  for (const fs::path& file : operations::referenced_files(*checked)) {
-    const fs::path target = folder / file.lexically_relative(base);
+  for (const ReferencedFile& file : referenced_files(*checked)) {
+    const fs::path target = folder / fs::path(file.name);
     std::error_code error;
     fs::create_directories(target.parent_path(), error);
-    if (fs::equivalent(file, target, error)) continue;
-    if (run.flags.no_clobber && fs::exists(target)) {
-      run.sink.report({.code = Code::write_exists, .args = {target.string()}});
+    if (fs::equivalent(file.resource.name(), target, error)) continue;
+    std::string why;
+    const auto bytes = ResourceBytes::open(file.resource, why);
+    if (!bytes) {
+      run.sink.report({.code = Code::import_unreadable, .args = {file.name, why}});
       return false;
     }
-    if (!fs::copy_file(file, target, fs::copy_options::overwrite_existing, error)) {
-      run.sink.report({.code = Code::write_failed, .args = {target.string(), error.message()}});
-      return false;
-    }
+    if (!write_text(target, bytes->view(), run)) return false;
   }
   return true;
 }

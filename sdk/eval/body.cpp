@@ -7,7 +7,6 @@
 
 #include "beams.hpp"
 #include "body_reader.hpp"
-#include "meso/resource/resource.hpp"
 
 namespace meso::eval {
 namespace {
@@ -21,9 +20,9 @@ class ShapeMaker {
     return {BooleanShape{BooleanOperation::union_, make_all(body.operands)}, body.id_in_source};
   }
   Shape make(const ImportBody& body) {
-    const auto file = resolve_href(read_.data().checked.folder(), body.href.text);
+    const auto file = read_.data().checked.resources().find(body.href.text);
     if (!file) read_.fail(Code::href_outside, {body.id_in_source, "href"}, {body.href.text});
-    return {ImportShape{.file = file.value_or(std::filesystem::path{}),
+    return {ImportShape{.file = file.value_or(Resource{}),
                         .sha256 = body.sha256,
                         .scale = body.unit ? millimeters_per(*body.unit) : 1,
                         .transform = body.transform

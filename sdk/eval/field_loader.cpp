@@ -114,13 +114,13 @@ class FieldLoader {
   std::optional<T> read_with(const ExternalValues& external, const Read& read, std::size_t columns,
                              std::size_t rows = 0) const {
     const Place place{external.id_in_source, "href"};
-    const auto file = resolve_href(data_.checked.folder(), external.href.text);
+    const auto file = data_.checked.resources().find(external.href.text);
     if (!file) {
       report_(Code::import_unreadable, place, {external.href.text, "it is outside of the document's folder"});
       return std::nullopt;
     }
     if (external.sha256) {
-      const auto sum = sha256_of_file(*file);
+      const auto sum = sha256_of(*file);
       if (sum && *sum != *external.sha256) {
         report_(Code::import_changed, {external.id_in_source, "sha256"}, {external.href.text, *sum, *external.sha256});
         return std::nullopt;

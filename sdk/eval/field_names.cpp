@@ -1,69 +1,31 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "field_names.hpp"
 
-#include "meso/model/describe.hpp"
+#include "meso/model/walk.hpp"
 
 namespace meso::eval {
 namespace {
 
-/// Visits every expression of an element and of those in it.
-class NameCollector {
- public:
-  NameCollector(LengthUnit unit, std::set<std::string>& names) : unit_(unit), names_(names) {}
-
-  void attribute(std::string_view, const Expression& value) { add(value.text); }
-  void attribute(std::string_view, const std::optional<Expression>& value) {
-    if (value) add(value->text);
+void add_names(std::string_view text, std::set<std::string>& names) {
+  const expr::ParseResult parsed = expr::parse_expression(text, LengthUnit::millimeter);
+  if (!parsed.expression) return;  // reported where it is bound
+  for (const expr::Name& name : parsed.expression->names()) {
+    if (name.text.find('.') != std::string::npos) names.insert(name.text);
   }
-  void attribute(std::string_view, const ExpressionList& value) {
-    for (const expr::ListItem& item : expr::split_list(value.text)) add(item.text);
-  }
-  template <class T>
-  void attribute(std::string_view, const T&) {}
-  void text(const std::string&) {}
-  template <class T>
-  void child(std::string_view, const T& element) {
-    describe(*this, element);
-  }
-  template <class T>
-  void child(std::string_view, const std::optional<T>& element) {
-    if (element) describe(*this, *element);
-  }
-  template <class T>
-  void children(std::string_view, const std::vector<T>& elements) {
-    for (const T& e : elements) describe(*this, e);
-  }
-  void sequence(const std::vector<Instruction>& elements) {
-    for (const Instruction& e : elements) choice(e);
-  }
-  template <class... T>
-  void choice(const std::variant<T...>& value) {
-    std::visit(
-        [this](const auto& v) {
-          if constexpr (!std::is_same_v<std::decay_t<decltype(v)>, std::monostate>) describe(*this, v);
-        },
-        value);
-  }
-
- private:
-  void add(std::string_view text) {
-    const expr::ParseResult parsed = expr::parse_expression(text, unit_);
-    if (!parsed.expression) return;  // reported where it is bound
-    for (const expr::Name& name : parsed.expression->names()) {
-      if (name.text.find('.') != std::string::npos) names_.insert(name.text);
-    }
-  }
-  LengthUnit unit_;
-  std::set<std::string>& names_;
-};
+}
 
 }  // namespace
 
 std::set<std::string> named_quantities(const Pattern& pattern, const UnitCell& cell) {
   std::set<std::string> names;
-  NameCollector collector(LengthUnit::millimeter, names);
-  describe(collector, pattern);
-  for (const CellParameter& parameter : cell.parameters) describe(collector, parameter);
+  const auto add = [&names](const Element&, std::string_view, const auto& value) {
+    using Value = std::decay_t<decltype(value)>;
+    if constexpr (std::is_same_v<Value, Expression>) add_names(value.text, names);
+    if constexpr (std::is_same_v<Value, ExpressionList>)
+      for (const expr::ListItem& item : expr::split_list(value.text)) add_names(item.text, names);
+  };
+  walk(pattern, add);
+  for (const CellParameter& parameter : cell.parameters) walk(parameter, add);
   return names;
 }
 

@@ -55,7 +55,7 @@ TEST(Records, AFileMayHaveAnOffsetAndAStride) {
   const std::vector<double> numbers{-1, 0, 1, 99, 10, 11, 98, 20, 21};
   std::ofstream(file, std::ios::binary).write(reinterpret_cast<const char*>(numbers.data()), 72);
   std::string error;
-  const auto mapped = MappedFile::open(file, error);
+  const auto mapped = ResourceBytes::open(file, error);
   ASSERT_TRUE(mapped) << error;
   const auto records = Records::map(mapped, {.offset = 8, .stride = 24, .rows = 3, .columns = 2});
   ASSERT_TRUE(records);
@@ -63,7 +63,7 @@ TEST(Records, AFileMayHaveAnOffsetAndAStride) {
   EXPECT_EQ((*records)(2, 1), 21);
   EXPECT_FALSE(Records::map(mapped, {.offset = 16, .stride = 24, .rows = 3, .columns = 2}));
   EXPECT_FALSE(Records::map(mapped, {.rows = std::size_t{1} << 62, .columns = 8}));
-  EXPECT_FALSE(MappedFile::open(testing::TempDir(), error));
+  EXPECT_FALSE(ResourceBytes::open(testing::TempDir(), error));
 }
 
 // With Q orthogonal and D diagonal the tensor Q D Q^T has the values of D and the columns of Q.

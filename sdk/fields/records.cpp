@@ -1,13 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "meso/fields/records.hpp"
 
-#include <fcntl.h>
-#include <sys/mman.h>
-#include <sys/stat.h>
-#include <unistd.h>
-
 #include <cassert>
-#include <cerrno>
 
 namespace meso::fields {
 namespace {
@@ -17,35 +11,6 @@ std::uint64_t stride_of(const RecordLayout& layout) {
 }
 
 }  // namespace
-
-std::shared_ptr<const MappedFile> MappedFile::open(const std::filesystem::path& file, std::string& error) {
-  const int descriptor = ::open(file.c_str(), O_RDONLY | O_CLOEXEC);
-  struct stat status {};
-  if (descriptor < 0 || fstat(descriptor, &status) != 0) {
-    error = std::strerror(errno);
-    if (descriptor >= 0) close(descriptor);
-    return nullptr;
-  }
-  const std::shared_ptr<MappedFile> result(new MappedFile);
-  result->size_ = static_cast<std::size_t>(status.st_size);
-  void* bytes = nullptr;
-  if (!S_ISREG(status.st_mode))
-    error = "it is no regular file";
-  else if (result->size_ > 0 &&
-           (bytes = mmap(nullptr, result->size_, PROT_READ, MAP_PRIVATE, descriptor, 0)) == MAP_FAILED)
-    error = std::strerror(errno);
-  close(descriptor);
-  if (!error.empty()) {
-    result->size_ = 0;
-    return nullptr;
-  }
-  result->data_ = static_cast<const char*>(bytes);
-  return result;
-}
-
-MappedFile::~MappedFile() {
-  if (size_ > 0) munmap(const_cast<char*>(data_), size_);
-}
 
 Records Records::of(std::vector<double> values, std::size_t columns) {
   assert(columns > 0 && values.size() % columns == 0);
@@ -69,11 +34,11 @@ std::optional<std::uint64_t> Records::bytes_needed(const RecordLayout& layout) {
   return end;
 }
 
-std::optional<Records> Records::map(std::shared_ptr<const MappedFile> file, const RecordLayout& layout) {
+std::optional<Records> Records::map(std::shared_ptr<const ResourceBytes> file, const RecordLayout& layout) {
   const auto needed = bytes_needed(layout);
-  if (!needed || *needed > file->bytes().size()) return std::nullopt;
+  if (!needed || *needed > file->view().size()) return std::nullopt;
   Records result;
-  result.data_ = reinterpret_cast<const std::byte*>(file->bytes().data()) + layout.offset;
+  result.data_ = reinterpret_cast<const std::byte*>(file->view().data()) + layout.offset;
   result.stride_ = static_cast<std::size_t>(stride_of(layout));
   result.rows_ = layout.rows;
   result.columns_ = layout.columns;

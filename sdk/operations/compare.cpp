@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "meso/operations/compare.hpp"
 
+#include <set>
+
 #include "meso/base/xml_text.hpp"
 #include "meso/brep/triangles.hpp"
 #include "meso/export_step/write_step.hpp"
 #include "meso/export_stl/write_stl.hpp"
-#include "meso/xml/read.hpp"
-#include "packed_size.hpp"
+#include "meso/package/open_document.hpp"
+#include "meso/package/package.hpp"
+#include "meso/package/referenced_files.hpp"
 #include "stopwatch.hpp"
 
 namespace meso::operations {
@@ -32,10 +35,10 @@ std::uint64_t step_bytes(const brep::Body& body) {
   return count.bytes();
 }
 
-std::uint64_t file_bytes(const fs::path& file) {
-  std::error_code error;
-  const auto size = fs::file_size(file, error);
-  return error ? 0 : size;
+std::uint64_t bytes_of(const Resource& resource) {
+  std::string error;
+  const auto bytes = ResourceBytes::open(resource, error);
+  return bytes ? bytes->view().size() : 0;
 }
 
 /// The macrostructures alone: imported STEP files as they are, others as the STEP that convert would write.
@@ -43,7 +46,7 @@ std::optional<std::uint64_t> macro_bytes(const eval::Evaluation& evaluation, Dia
   std::uint64_t total = 0;
   for (const Macrostructure& macro : evaluation.document().macrostructures) {
     if (const auto* import = std::get_if<ImportBody>(&macro.body)) {
-      total += file_bytes(evaluation.checked().folder() / import->href.text);
+      total += bytes_of(*evaluation.checked().resources().find(import->href.text));
       continue;
     }
     const auto body = brep::realise_macrostructure(evaluation, macro, {}, sink);
@@ -78,18 +81,21 @@ std::optional<ComparisonRow> compare(const fs::path& document, const MakeOptions
   row.triangles = write_stl(brep::triangles_of(body), StlFormat::ascii, stl).triangles;
   row.part_stl = stl.bytes();
 
-  std::vector<fs::path> files = referenced_files(made->evaluation.checked());
-  files.insert(files.begin(), document);
-  for (const fs::path& file : files) row.framework += file_bytes(file);
-  const auto packed = packed_size(files, sink);
+  const CheckedDocument& checked = made->evaluation.checked();
+  row.framework = checked.source().text().size();
+  std::set<fs::path> files;  // two names may lead to one file
+  for (const ReferencedFile& file : referenced_files(checked)) {
+    if (files.insert(file.resource.name()).second) row.framework += bytes_of(file.resource);
+  }
+  const auto packed = packed_size(checked, options.run, sink);
   if (!packed) return std::nullopt;
-  row.packed = *packed;
+  row.packed = packed->bytes;
   return row;
 }
 
 std::optional<std::string> document_with_parameter(const fs::path& document, const std::string& id,
                                                    const std::string& value, DiagnosticSink& sink) {
-  const auto read = read_document_file(document, sink);
+  const auto read = open_document(document, {}, sink);
   if (!read) return std::nullopt;
   for (const Parameter& parameter : read->document.parameters) {
     if (parameter.id.text != id) continue;

@@ -27,7 +27,7 @@ bool has_flat_faces_only(const brep::Body& body) {
 }  // namespace
 
 std::optional<membership::ImportedSolid> ImportedBodies::read(const eval::ImportShape& import) {
-  const auto [found, fresh] = known_.try_emplace(import.file);
+  const auto [found, fresh] = known_.try_emplace(import.file.name());
   if (fresh) {
     if (const auto mesh = triangles(import)) {
       const auto solid = std::make_shared<const membership::TriangleSolid>(*mesh);
@@ -38,7 +38,7 @@ std::optional<membership::ImportedSolid> ImportedBodies::read(const eval::Import
 }
 
 std::optional<TriangleMesh> ImportedBodies::triangles(const eval::ImportShape& import) {
-  if (lower_extension(import.file) == ".stl") return read_surface_mesh_file(import.file, sink_, run_);
+  if (lower_extension(import.file.name()) == ".stl") return read_surface_mesh_file(import.file, sink_, run_);
   const auto body =
       brep::read_step(import.file, {.relative_deflection = relative_deflection, .angle_rad = 0.1}, run_, sink_);
   if (!body) return {};

@@ -4,19 +4,12 @@
 #include <algorithm>
 
 #include "meso/operations/macrostructure_distance.hpp"
-#include "meso/validate/validate.hpp"
-#include "meso/xml/read.hpp"
+#include "meso/package/open_document.hpp"
 #include "stopwatch.hpp"
 
 namespace meso::operations {
 namespace fs = std::filesystem;
 namespace {
-
-std::optional<CheckedDocument> open(const fs::path& file, DiagnosticSink& sink) {
-  auto read = read_document_file(file, sink);
-  if (!read) return std::nullopt;
-  return validate(std::move(read->document), std::move(read->source), file.parent_path(), sink);
-}
 
 /// The first build item that is made and has mesh settings.
 const MeshSettings* document_mesh(const Document& document, const std::string& part) {
@@ -76,7 +69,7 @@ std::optional<Fineness> mesh_fineness(const eval::Evaluation& evaluation, const 
 
 std::optional<Prepared> prepare(const fs::path& document, const MakeOptions& options, DiagnosticSink& sink) {
   Stopwatch watch;
-  const auto checked = open(document, sink);
+  const auto checked = open_checked_document(document, options.run, sink);
   if (!checked) return std::nullopt;
   const double read = watch.lap();
   auto evaluation = eval::Evaluation::make(*checked,

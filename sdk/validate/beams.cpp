@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // nodes and struts.
 #include "families.hpp"
-#include "walk.hpp"
+#include "meso/model/walk.hpp"
 
 namespace meso {
 namespace {

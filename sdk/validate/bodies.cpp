@@ -8,7 +8,7 @@
 #include "families.hpp"
 #include "meso/base/vec.hpp"
 #include "meso/expr/expression.hpp"
-#include "walk.hpp"
+#include "meso/model/walk.hpp"
 
 namespace meso {
 namespace {

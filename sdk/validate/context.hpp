@@ -4,7 +4,6 @@
 // writes diagnostics. A family asks with find() and constant(), which answer nothing where a fault was already told, so
 // that no consequence of a fault is reported.
 
-#include <filesystem>
 #include <map>
 #include <optional>
 #include <span>
@@ -16,6 +15,7 @@
 #include "meso/base/number.hpp"
 #include "meso/model/document.hpp"
 #include "meso/model/source_map.hpp"
+#include "meso/resource/resource.hpp"
 #include "scope.hpp"
 
 namespace meso {
@@ -44,12 +44,12 @@ MESO_KIND(Part, part, parts);
 
 class Context {
  public:
-  Context(const Document& d, const SourceMap& s, const std::filesystem::path& f, DiagnosticSink& sink)
-      : document(d), source(s), folder(f), sink_(sink) {}
+  Context(const Document& d, const SourceMap& s, const Resources& r, DiagnosticSink& sink)
+      : document(d), source(s), resources(r), sink_(sink) {}
 
   const Document& document;
   const SourceMap& source;
-  const std::filesystem::path& folder;
+  const Resources& resources;
 
   struct Entry {
     Kind kind{};

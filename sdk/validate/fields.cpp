@@ -6,7 +6,7 @@
 
 #include "families.hpp"
 #include "meso/model/field_quantities.hpp"
-#include "walk.hpp"
+#include "meso/model/walk.hpp"
 
 namespace meso {
 namespace {

@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Ids, the references to them, and files.
 #include <algorithm>
-#include <system_error>
 
 #include "families.hpp"
-#include "meso/resource/resource.hpp"
-#include "walk.hpp"
+#include "meso/model/walk.hpp"
 
 namespace meso {
 namespace {
@@ -52,11 +50,10 @@ class LinkCheck {
   }
 
   void operator()(const Element& element, std::string_view attribute, const Href& href) {
-    const auto file = resolve_href(c_.folder, href.text);
-    std::error_code error;
+    const auto file = c_.resources.find(href.text);
     if (!file)
       c_.report(Code::href_outside, element, attribute, {href.text});
-    else if (!std::filesystem::is_regular_file(*file, error))
+    else if (!file->exists())
       c_.report(Code::href_not_found, element, attribute, {href.text});
   }
 

@@ -6,7 +6,7 @@
 #include "families.hpp"
 #include "generators.hpp"
 #include "instructions.hpp"
-#include "walk.hpp"
+#include "meso/model/walk.hpp"
 
 namespace meso {
 namespace {

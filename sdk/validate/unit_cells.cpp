@@ -4,7 +4,7 @@
 
 #include "families.hpp"
 #include "surface_names.hpp"
-#include "walk.hpp"
+#include "meso/model/walk.hpp"
 
 namespace meso {
 namespace {

@@ -35,7 +35,7 @@ TEST(Validate, ChecksADocumentBuiltInMemory) {
   const auto checked = validate(d, {}, "folder", sink);
   ASSERT_TRUE(checked);
   EXPECT_EQ(checked->document(), d);
-  EXPECT_EQ(checked->folder(), "folder");
+  EXPECT_TRUE(checked->resources().find("body.step")->name().string().ends_with("folder/body.step"));
 }
 
 TEST(Validate, ReportsWithoutPlacesInADocumentBuiltInMemory) {

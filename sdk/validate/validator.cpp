@@ -8,10 +8,10 @@
 
 namespace meso {
 
-std::optional<CheckedDocument> Validator::run(Document document, SourceMap source, std::filesystem::path folder,
-                                              DiagnosticSink& sink) {
+std::optional<CheckedDocument> Validator::run(Document document, SourceMap source,
+                                              std::shared_ptr<const Resources> resources, DiagnosticSink& sink) {
   const std::size_t errors_before = sink.error_count();
-  Context c(document, source, folder, sink);
+  Context c(document, source, *resources, sink);
   collect_ids(c);
   fill_library_cells(c, document);
   check_links(c);
@@ -25,12 +25,17 @@ std::optional<CheckedDocument> Validator::run(Document document, SourceMap sourc
   check_parts(c);
   if (sink.error_count() != errors_before) return std::nullopt;
   return CheckedDocument(std::make_shared<const Document>(std::move(document)),
-                         std::make_shared<const SourceMap>(std::move(source)), std::move(folder));
+                         std::make_shared<const SourceMap>(std::move(source)), std::move(resources));
 }
 
-std::optional<CheckedDocument> validate(Document document, SourceMap source, std::filesystem::path folder,
+std::optional<CheckedDocument> validate(Document document, SourceMap source, std::shared_ptr<const Resources> resources,
                                         DiagnosticSink& sink) {
-  return Validator::run(std::move(document), std::move(source), std::move(folder), sink);
+  return Validator::run(std::move(document), std::move(source), std::move(resources), sink);
+}
+
+std::optional<CheckedDocument> validate(Document document, SourceMap source, const std::filesystem::path& folder,
+                                        DiagnosticSink& sink) {
+  return Validator::run(std::move(document), std::move(source), resources_in_folder(folder), sink);
 }
 
 }  // namespace meso

@@ -2,7 +2,6 @@
 #pragma once
 // The one class that may make a CheckedDocument.
 
-#include <filesystem>
 #include <optional>
 
 #include "meso/base/diagnostic.hpp"
@@ -14,7 +13,8 @@ class Validator {
  public:
   /// Runs all families of rules in order; empty if any of them reported an error.
   [[nodiscard]] static std::optional<CheckedDocument> run(Document document, SourceMap source,
-                                                          std::filesystem::path folder, DiagnosticSink& sink);
+                                                          std::shared_ptr<const Resources> resources,
+                                                          DiagnosticSink& sink);
 };
 
 }  // namespace meso

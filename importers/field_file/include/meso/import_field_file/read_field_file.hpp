@@ -17,11 +17,12 @@
 #include "meso/base/run_options.hpp"
 #include "meso/fields/table.hpp"
 #include "meso/model/field.hpp"
+#include "meso/resource/resource.hpp"
 
 namespace meso {
 
 struct FieldFileRequest {
-  std::filesystem::path file;
+  Resource file;
   ValueFormat format = ValueFormat::raw;
   std::string path{};                    ///< data set inside the file; of the other formats all, or one by its name
   std::uint64_t offset = 0, stride = 0;  ///< bytes, raw only; stride 0: dense

@@ -12,7 +12,6 @@
 // FIELD_FILE_UNSUPPORTED (texts, three dimensions), FIELD_RECORD_COUNT, LIMIT_MEMORY. Thread rule: one call at a time,
 // as Debian's library has no lock; the room holds one.
 
-#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
@@ -20,13 +19,14 @@
 #include "meso/base/diagnostic.hpp"
 #include "meso/base/run_options.hpp"
 #include "meso/fields/table.hpp"
+#include "meso/resource/resource.hpp"
 
 namespace meso {
 
-[[nodiscard]] std::optional<fields::Table> read_field_hdf5(const std::filesystem::path& file, const std::string& path,
+[[nodiscard]] std::optional<fields::Table> read_field_hdf5(const Resource& file, const std::string& path,
                                                            const RunOptions& run, DiagnosticSink& sink);
 
-[[nodiscard]] std::optional<std::vector<std::int64_t>> read_field_hdf5_integers(const std::filesystem::path& file,
+[[nodiscard]] std::optional<std::vector<std::int64_t>> read_field_hdf5_integers(const Resource& file,
                                                                                 const std::string& path,
                                                                                 const RunOptions& run,
                                                                                 DiagnosticSink& sink);

@@ -16,7 +16,6 @@
 // the file's size before memory is taken. Cost: a million triangles take 0.1 s in binary PLY, 0.35 s in any text.
 // Thread rule: pure.
 
-#include <filesystem>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -24,6 +23,7 @@
 #include "meso/base/diagnostic.hpp"
 #include "meso/base/run_options.hpp"
 #include "meso/base/triangle_mesh.hpp"
+#include "meso/resource/resource.hpp"
 
 namespace meso {
 
@@ -31,7 +31,7 @@ namespace meso {
 [[nodiscard]] std::optional<TriangleMesh> read_surface_mesh(std::string_view bytes, const std::string& file,
                                                             DiagnosticSink& sink);
 /// A file may take a quarter of the memory budget: FILE_TOO_LARGE. LIMIT_TIME, CANCELLED.
-[[nodiscard]] std::optional<TriangleMesh> read_surface_mesh_file(const std::filesystem::path& file,
+[[nodiscard]] std::optional<TriangleMesh> read_surface_mesh_file(const Resource& file,
                                                                  DiagnosticSink& sink, const RunOptions& run = {});
 
 }  // namespace meso

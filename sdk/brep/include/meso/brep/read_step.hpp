@@ -8,12 +8,12 @@
 // Triangles only where a deflection is given. Cost: OpenCASCADE's reader, about 1 ms a face and growing faster than the
 // number of faces.
 
-#include <filesystem>
 #include <optional>
 
 #include "meso/base/diagnostic.hpp"
 #include "meso/base/run_options.hpp"
 #include "meso/brep/body.hpp"
+#include "meso/resource/resource.hpp"
 
 namespace meso::brep {
 
@@ -23,7 +23,7 @@ struct ReadStepOptions {
   double angle_rad = 0.5;
 };
 
-[[nodiscard]] std::optional<Body> read_step(const std::filesystem::path& file, const ReadStepOptions& options,
+[[nodiscard]] std::optional<Body> read_step(const Resource& file, const ReadStepOptions& options,
                                             const RunOptions& run, DiagnosticSink& sink);
 
 }  // namespace meso::brep

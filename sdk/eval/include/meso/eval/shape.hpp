@@ -3,7 +3,6 @@
 // A body with every number known: what evaluation hands to the engines. Millimetres, radians, no expressions left.
 // A Shape of a unit cell stands in cell coordinates; PlacedCell::world_from_cell puts it into the world.
 
-#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
@@ -13,6 +12,7 @@
 #include "meso/base/vec.hpp"
 #include "meso/eval/coordinates.hpp"
 #include "meso/model/document.hpp"
+#include "meso/resource/resource.hpp"
 
 namespace meso::eval {
 
@@ -52,7 +52,7 @@ struct VolumeElementShape {
 };
 /// A file, unread. `scale` gives millimetres (1 for STEP, which knows its unit).
 struct ImportShape {
-  std::filesystem::path file;
+  Resource file;
   std::optional<std::string> sha256;
   double scale = 1;
   Affine transform;

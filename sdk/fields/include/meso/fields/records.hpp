@@ -4,7 +4,7 @@
 //
 //   const Records records = Records::of({0, 1, 2, 3, 4, 5}, 3);   // two rows of three
 //   records(1, 2);                                                 // 5
-//   const auto file = MappedFile::open("values.raw", error);
+//   const auto file = ResourceBytes::open("values.raw", error);
 //   auto mapped = Records::map(file, {.offset = 16, .rows = 10'000'000, .columns = 4});   // nothing if it is too short
 //
 // Cheap to copy (copies share the numbers), immutable, safe to share between threads. A mapped file must not change
@@ -14,33 +14,15 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
-#include <filesystem>
 #include <memory>
 #include <optional>
-#include <string>
-#include <string_view>
 #include <vector>
+
+#include "meso/resource/resource.hpp"
 
 namespace meso::fields {
 
 static_assert(std::endian::native == std::endian::little, "records are stored little-endian");
-
-/// A file's bytes without a copy; pages are read when they are touched and can be given back.
-class MappedFile {
- public:
-  /// Null, and why, if the file cannot be read or is no regular file.
-  [[nodiscard]] static std::shared_ptr<const MappedFile> open(const std::filesystem::path& file, std::string& error);
-  ~MappedFile();
-  MappedFile(const MappedFile&) = delete;
-  MappedFile& operator=(const MappedFile&) = delete;
-
-  [[nodiscard]] std::string_view bytes() const { return {data_, size_}; }
-
- private:
-  MappedFile() = default;
-  const char* data_ = nullptr;
-  std::size_t size_ = 0;
-};
 
 /// Where the rows stand in a file. A stride of 0 means dense rows.
 struct RecordLayout {
@@ -54,7 +36,7 @@ class Records {
   /// REQUIRES: columns > 0 divides the number of values.
   [[nodiscard]] static Records of(std::vector<double> values, std::size_t columns);
   /// Nothing if the file is shorter than the layout. REQUIRES: rows and columns > 0.
-  [[nodiscard]] static std::optional<Records> map(std::shared_ptr<const MappedFile> file, const RecordLayout& layout);
+  [[nodiscard]] static std::optional<Records> map(std::shared_ptr<const ResourceBytes> file, const RecordLayout& layout);
   /// Bytes that a file of this layout has at least; nothing if no file can be so long.
   [[nodiscard]] static std::optional<std::uint64_t> bytes_needed(const RecordLayout& layout);
 

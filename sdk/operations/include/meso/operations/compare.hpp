@@ -14,7 +14,7 @@ struct ComparisonRow {
   std::uint64_t part_stl = 0;  ///< ASCII, as in the paper
   std::uint64_t framework =
       0;  ///< all files needed to rebuild the part: document, macrostructure, fields; a shared file once
-  std::uint64_t packed = 0;  ///< the same files in one ZIP
+  std::uint64_t packed = 0;  ///< the same files in one package, .mesoz
   std::uint64_t triangles = 0;
   double deflection_mm = 0, angle_rad = 0;
   Seconds seconds;
@@ -31,9 +31,6 @@ struct ComparisonRow {
 /// Realises the document and counts bytes; writes no file.
 [[nodiscard]] std::optional<ComparisonRow> compare(const std::filesystem::path& document, const MakeOptions& options,
                                                    DiagnosticSink& sink);
-
-/// Files the document needs besides itself, each once, in order of first use.
-[[nodiscard]] std::vector<std::filesystem::path> referenced_files(const CheckedDocument& checked);
 
 /// The document with the value of parameter `id` replaced: a copy that differs in nothing else, byte for byte. Empty
 /// (with a diagnostic) if there is no such parameter.

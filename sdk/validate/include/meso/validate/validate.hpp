@@ -16,8 +16,11 @@
 
 namespace meso {
 
-/// `folder`: what hrefs are relative to. Empty if any error was reported.
-[[nodiscard]] std::optional<CheckedDocument> validate(Document document, SourceMap source, std::filesystem::path folder,
-                                                      DiagnosticSink& sink);
+/// `resources`: where hrefs lead; never null. Empty if any error was reported.
+[[nodiscard]] std::optional<CheckedDocument> validate(Document document, SourceMap source,
+                                                      std::shared_ptr<const Resources> resources, DiagnosticSink& sink);
+/// Hrefs are relative to `folder`.
+[[nodiscard]] std::optional<CheckedDocument> validate(Document document, SourceMap source,
+                                                      const std::filesystem::path& folder, DiagnosticSink& sink);
 
 }  // namespace meso
