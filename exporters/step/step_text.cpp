@@ -2,49 +2,13 @@
 #include "step_text.hpp"
 
 #include <algorithm>
-#include <system_error>
+#include <cstring>
 
 namespace meso::step {
 
-void StepText::await() {
-  if (writing_.valid()) ok_ = writing_.get() && ok_;
-}
-
-void StepText::hand_over() {
-  await();
-  if (written_.empty()) written_.resize(buffer_size);
-  std::swap(buffer_, written_);
-  const std::size_t size = std::exchange(used_, 0);
-  flushed_ += size;
-  if (!ok_) return;
-  const auto write = [this, size] { return sink_.write({written_.data(), size}); };
-  try {
-    writing_ = std::async(std::launch::async, write);
-  } catch (const std::system_error&) {  // no thread to be had, under a limit on memory for example
-    ok_ = write();
-  }
-}
-
-void StepText::flush() {
-  await();
-  ok_ = ok_ && sink_.write({buffer_.data(), used_});
-  flushed_ += std::exchange(used_, 0);
-}
-
-void StepText::put_slowly(std::string_view text) {
-  while (!text.empty()) {
-    if (used_ == buffer_size) hand_over();
-    const std::size_t part = std::min(text.size(), buffer_size - used_);
-    std::memcpy(buffer_.data() + used_, text.data(), part);
-    used_ += part;
-    text.remove_prefix(part);
-  }
-}
-
 // The shortest digits that read back as the same double, in STEP's spelling: always a point, exponent E.
 void StepText::real(double value) {
-  if (buffer_size - used_ < longest_number) hand_over();
-  char* const begin = buffer_.data() + used_;
+  char* const begin = buffer_->claim(longest_number);
   char* end = std::to_chars(begin, begin + longest_number, value + 0.0).ptr;  // + 0.0: no "-0."
   char* const exponent = std::find(begin, end, 'e');
   if (exponent != end) *exponent = 'E';
@@ -53,7 +17,7 @@ void StepText::real(double value) {
     *exponent = '.';
     ++end;
   }
-  used_ = static_cast<std::size_t>(end - buffer_.data());
+  buffer_->advance(static_cast<std::size_t>(end - begin));
 }
 
 namespace {

@@ -1,23 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// The syntax of a STEP file: numbered entities with typed arguments, buffered into a sink. While one buffer fills, the
-// one before it is written by a thread of its own, so a slow disk costs no time until it is slower than the text.
+// The syntax of a STEP file: numbered entities with typed arguments, appended to a buffer.
 //
 //   const StepId p = text.entity("CARTESIAN_POINT", NoName{}, Vec3{1, 2, 3});   // #1=CARTESIAN_POINT('',(1.,2.,3.));
 //   text.entity("VERTEX_POINT", NoName{}, Ref{p});
+//
+// Without a buffer nothing is spelled and entities are only numbered: a first pass tells where each range of a file
+// begins to count, and several threads write the ranges.
 
 #include <array>
 #include <charconv>
 #include <cstdint>
-#include <cstring>
-#include <future>
 #include <span>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
-#include "meso/base/byte_sink.hpp"
+#include "meso/base/byte_buffer.hpp"
 #include "meso/base/vec.hpp"
 
 namespace meso::step {
@@ -42,13 +42,15 @@ struct Grid {  ///< ((..),(..)) of rows of `columns` values
 
 class StepText {
  public:
-  explicit StepText(ByteSink& sink) : sink_(sink), buffer_(buffer_size) {}
+  /// The next entity is number `last` + 1.
+  explicit StepText(ByteBuffer* buffer, StepId last = 0) : buffer_(buffer), last_(last) {}
   StepText(const StepText&) = delete;
   StepText& operator=(const StepText&) = delete;
 
   /// `keyword(arguments)` as the next entity.
   template <typename... Arguments>
   StepId entity(std::string_view keyword, const Arguments&... arguments) {
+    if (buffer_ == nullptr) return ++last_;
     begin_entity();
     part(keyword, arguments...);
     return end_entity();
@@ -56,11 +58,13 @@ class StepText {
 
   // A complex entity is written part by part between begin_complex() and end_complex().
   void begin_complex() {
+    if (buffer_ == nullptr) return;
     begin_entity();
     put("(");
   }
   template <typename... Arguments>
   void part(std::string_view keyword, const Arguments&... arguments) {
+    if (buffer_ == nullptr) return;
     put(keyword);
     put("(");
     std::string_view separator;
@@ -68,44 +72,35 @@ class StepText {
     put(")");
   }
   StepId end_complex() {
+    if (buffer_ == nullptr) return ++last_;
     put(")");
     return end_entity();
   }
 
   /// Anything outside the data section.
-  void raw(std::string_view text) { put(text); }
+  void raw(std::string_view text) {
+    if (buffer_ != nullptr) put(text);
+  }
 
-  /// Everything is in the sink when this returns.
-  void flush();
-  [[nodiscard]] std::uint64_t bytes() const { return flushed_ + used_; }
-  [[nodiscard]] std::uint64_t entities() const { return last_; }
-  [[nodiscard]] bool ok() const { return ok_; }
+  /// The number of the last entity.
+  [[nodiscard]] StepId last() const { return last_; }
 
  private:
-  static constexpr std::size_t buffer_size = std::size_t{1} << 20;
   static constexpr std::size_t longest_number = 32;
 
-  void hand_over();
-  void await();
   void begin_entity() {
     put("#");
-    integer(++last_);
+    integer(last_ + 1);
     put("=");
   }
   StepId end_entity() {
     put(";\n");
-    return last_;
+    return ++last_;
   }
-  void put(std::string_view text) {
-    if (text.size() > buffer_size - used_) return put_slowly(text);
-    std::memcpy(buffer_.data() + used_, text.data(), text.size());
-    used_ += text.size();
-  }
-  void put_slowly(std::string_view text);
+  void put(std::string_view text) { buffer_->append(text); }
   void integer(std::uint64_t value) {
-    if (buffer_size - used_ < longest_number) hand_over();
-    char* const begin = buffer_.data() + used_;
-    used_ += static_cast<std::size_t>(std::to_chars(begin, begin + longest_number, value).ptr - begin);
+    char* const begin = buffer_->claim(longest_number);
+    buffer_->advance(static_cast<std::size_t>(std::to_chars(begin, begin + longest_number, value).ptr - begin));
   }
   void real(double value);
 
@@ -146,13 +141,8 @@ class StepText {
     put(")");
   }
 
-  ByteSink& sink_;
-  std::vector<char> buffer_, written_;  ///< the second belongs to the thread while it runs
-  std::size_t used_ = 0;
-  std::uint64_t flushed_ = 0;
-  StepId last_ = 0;
-  bool ok_ = true;
-  std::future<bool> writing_;
+  ByteBuffer* buffer_;
+  StepId last_;
 };
 
 }  // namespace meso::step

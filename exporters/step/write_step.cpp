@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "meso/export_step/write_step.hpp"
 
-#include <algorithm>
-#include <chrono>
+#include <deque>
+#include <map>
+#include <optional>
 
-#include "meso/brep/instance_map.hpp"
-#include "step_geometry.hpp"
-#include "step_text.hpp"
+#include "meso/base/ordered_blocks.hpp"
+#include "step_document.hpp"
+#include "step_shell.hpp"
 
 namespace meso {
 namespace step {
@@ -14,191 +15,163 @@ namespace {
 
 using namespace brep;
 
-/// One shell: vertices and edges are written when a face first uses them, and never twice.
-class ShellWriter {
- public:
-  ShellWriter(StepText& text, StepGeometry& geometry, const Shell& shell)
-      : text_(text), geometry_(geometry), shell_(shell), template_(*shell.geometry), pose_(shell) {}
+constexpr std::size_t block_faces = 1024;       ///< over a megabyte of text
+constexpr std::size_t group_faces = 64 * 1024;  ///< shells are numbered together up to this
 
-  StepId write() {
-    shell_.visit([this](const FaceInstance& instance) {
-      if (text_.ok()) faces_.push_back(write_face(template_.faces[instance.face], instance.cell));
-    });
-    return text_.entity("CLOSED_SHELL", NoName{}, faces_);
+/// A shell, the numbers of its entities, and what is written behind its faces.
+struct NumberedShell {
+  const Solid* solid = nullptr;
+  const Shell* shell = nullptr;
+  std::vector<FaceInstance> faces;
+  ShellNumbers numbers;
+
+  [[nodiscard]] bool is_void() const { return shell != &solid->outer; }
+  [[nodiscard]] bool is_last() const { return shell == (solid->voids.empty() ? &solid->outer : &solid->voids.back()); }
+};
+
+/// A face of a group, or, behind a shell's last, the end of the shell.
+struct Position {
+  std::size_t shell = 0, face = 0;
+};
+struct Block {
+  Position from;
+  std::size_t steps = 0;  ///< faces and ends of shells
+  StepId last = 0;        ///< number before the block's first entity
+};
+
+class BodyWriter {
+ public:
+  BodyWriter(const StepOptions& options, ByteSink& sink) : options_(options), sink_(sink) {}
+
+  StepCounts write(const Body& body) {
+    ByteBuffer head;
+    StepText text(&head);
+    write_header(text, options_);
+    const StepId shape = write_product(text, options_);
+    const StepId context = write_context(text);
+    const StepId origin = text.entity("CARTESIAN_POINT", NoName{}, Vec3{});
+    const StepId z = text.entity("DIRECTION", NoName{}, Vec3{0, 0, 1}),
+                 x = text.entity("DIRECTION", NoName{}, Vec3{1, 0, 0});
+    items_.push_back(text.entity("AXIS2_PLACEMENT_3D", NoName{}, Ref{origin}, Ref{z}, Ref{x}));
+    last_ = text.last();
+    put(head);
+    for (const Solid& solid : body.solids) {
+      add(solid, solid.outer);
+      for (const Shell& hollow : solid.voids) add(solid, hollow);
+    }
+    write_group();
+    ByteBuffer tail;
+    StepText end(&tail, last_);
+    const StepId representation =
+        end.entity("ADVANCED_BREP_SHAPE_REPRESENTATION", Quoted{options_.name}, items_, Ref{context});
+    end.entity("SHAPE_DEFINITION_REPRESENTATION", Ref{shape}, Ref{representation});
+    end.raw("ENDSEC;\nEND-ISO-10303-21;\n");
+    put(tail);
+    return {bytes_, end.last(), ok_};
   }
 
  private:
-  StepId write_face(const FaceTemplate& face, const Index3& cell) {
-    bounds_.clear();
-    for (const auto& loop : face.loops) {
-      const StepId written = write_loop(loop, cell);
-      bounds_.push_back(text_.entity("FACE_BOUND", NoName{}, Ref{written}, true));
-    }
-    pose_.set_cell(cell);
-    const StepId surface = geometry_.surface(face.surface, pose_);
-    return text_.entity("ADVANCED_FACE", NoName{}, bounds_, Ref{surface}, !face.reversed);
+  void put(const ByteBuffer& text) {
+    ok_ = ok_ && sink_.write(text.view());
+    bytes_ += text.size();
   }
 
-  // Edges without a curve (poles, apexes) have no place in STEP; a loop of nothing else is a point.
-  StepId write_loop(const std::vector<Coedge>& loop, const Index3& cell) {
-    coedges_.clear();
-    for (const Coedge& use : loop) {
-      if (template_.edges[use.edge].degenerate) continue;
-      const StepId edge = edge_id(use.edge, cell + use.offset);
-      coedges_.push_back(text_.entity("ORIENTED_EDGE", NoName{}, Raw{"*"}, Raw{"*"}, Ref{edge}, !use.reversed));
-    }
-    if (!coedges_.empty()) return text_.entity("EDGE_LOOP", NoName{}, coedges_);
-    const EdgeTemplate& pole = template_.edges[loop.front().edge];
-    const StepId vertex = vertex_id(pole.vertex[0], cell + loop.front().offset + pole.vertex_offset[0]);
-    return text_.entity("VERTEX_LOOP", NoName{}, Ref{vertex});
+  void add(const Solid& solid, const Shell& shell) {
+    if (!ok_) return;
+    NumberedShell& added = group_.emplace_back();
+    added.solid = &solid;
+    added.shell = &shell;
+    shell.visit([&](const FaceInstance& instance) { added.faces.push_back(instance); });
+    in_group_ += added.faces.size();
+    if (in_group_ >= group_faces) write_group();
   }
 
-  StepId edge_id(std::uint32_t index, const Index3& cell) {
-    const auto [id, fresh] = edges_.find_or_add(index, cell);
-    if (fresh) {
-      const EdgeTemplate& edge = template_.edges[index];
-      const StepId first = vertex_id(edge.vertex[0], cell + edge.vertex_offset[0]);
-      const StepId last = vertex_id(edge.vertex[1], cell + edge.vertex_offset[1]);
-      pose_.set_cell(cell);
-      const StepId curve = geometry_.curve(edge.curve, pose_);
-      id = text_.entity("EDGE_CURVE", NoName{}, Ref{first}, Ref{last}, Ref{curve}, true);
+  /// Numbers all entities, which is a tenth of the work, then writes them in blocks. One thread does both at once.
+  void write_group() {
+    const bool at_once = threads_for(options_.jobs) == 1;
+    ByteBuffer buffer;
+    std::vector<Block> blocks;
+    std::size_t steps = in_group_ + group_.size();
+    for (Position at; ok_ && steps > 0; steps -= blocks.back().steps) {
+      blocks.push_back({at, std::min(steps, block_faces), last_});
+      StepText text(at_once ? &buffer : nullptr, last_);
+      at = write_block<ShellNumbers>(text, blocks.back());
+      last_ = text.last();
+      if (at_once) put(buffer);
+      buffer.clear();
     }
-    return id;
+    if (!at_once) {
+      const WrittenBlocks done =
+          write_in_order(blocks.size(), options_.jobs, sink_, [&](std::size_t block, ByteBuffer& out) {
+            StepText text(&out, blocks[block].last);
+            write_block<const ShellNumbers>(text, blocks[block]);
+          });
+      ok_ = ok_ && done.complete;
+      bytes_ += done.bytes;
+    }
+    group_.clear();
+    in_group_ = 0;
   }
 
-  StepId vertex_id(std::uint32_t index, const Index3& cell) {
-    const auto [id, fresh] = vertices_.find_or_add(index, cell);
-    if (fresh) {
-      pose_.set_cell(cell);
-      const StepId point = geometry_.point(pose_.point(template_.vertices[index]));
-      id = text_.entity("VERTEX_POINT", NoName{}, Ref{point});
+  /// Returns where the next block begins. Only what is said with numbers that are not yet known is kept. Directions are
+  /// written again in every block, so that blocks do not depend on each other.
+  template <typename Numbers>
+  Position write_block(StepText& text, const Block& block) {
+    StepGeometry geometry(text);
+    Position at = block.from;
+    std::optional<ShellWriter> writer;
+    for (std::size_t step = 0; step < block.steps; ++step) {
+      NumberedShell& shell = group_[at.shell];
+      Numbers& numbers = shell.numbers;
+      if (!writer) writer.emplace(text, geometry, *shell.shell, numbers);
+      if (at.face < shell.faces.size()) {
+        const StepId face = writer->write_face(shell.faces[at.face++]);
+        if constexpr (!std::is_const_v<Numbers>) numbers.faces.push_back(face);
+        continue;
+      }
+      end_shell(text, shell, !std::is_const_v<Numbers>);
+      writer.reset();
+      at = {at.shell + 1, 0};
     }
-    return id;
+    return at;
   }
 
-  StepText& text_;
-  StepGeometry& geometry_;
-  const Shell& shell_;
-  const Template& template_;
-  Pose pose_;
-  InstanceMap<StepId> vertices_, edges_;
-  std::vector<StepId> faces_, bounds_, coedges_;
+  // Normals of a Body's voids already point into the hollow, as those of the solid must.
+  void end_shell(StepText& text, const NumberedShell& shell, bool keeps) {
+    const StepId closed = text.entity("CLOSED_SHELL", NoName{}, shell.numbers.faces);
+    const StepId id =
+        shell.is_void() ? text.entity("ORIENTED_CLOSED_SHELL", NoName{}, Raw{"*"}, Ref{closed}, true) : closed;
+    if (keeps && !shell.is_void()) solids_[shell.solid] = {id, {}};
+    if (keeps && shell.is_void()) solids_[shell.solid].voids.push_back(id);
+    if (!shell.is_last()) return;
+    const SolidNumbers& solid = solids_.at(shell.solid);
+    const StepId written = solid.voids.empty()
+                               ? text.entity("MANIFOLD_SOLID_BREP", NoName{}, Ref{solid.outer})
+                               : text.entity("BREP_WITH_VOIDS", NoName{}, Ref{solid.outer}, solid.voids);
+    if (keeps) items_.push_back(written);
+  }
+
+  struct SolidNumbers {
+    StepId outer = 0;
+    std::vector<StepId> voids;
+  };
+
+  const StepOptions& options_;
+  ByteSink& sink_;
+  std::deque<NumberedShell> group_;  ///< shells that are not yet written
+  std::size_t in_group_ = 0;         ///< faces
+  std::map<const Solid*, SolidNumbers> solids_;
+  std::vector<StepId> items_;
+  StepId last_ = 0;
+  std::uint64_t bytes_ = 0;
+  bool ok_ = true;
 };
-
-StepId write_solid(StepText& text, StepGeometry& geometry, const Solid& solid) {
-  const StepId outer = ShellWriter(text, geometry, solid.outer).write();
-  if (solid.voids.empty()) return text.entity("MANIFOLD_SOLID_BREP", NoName{}, Ref{outer});
-  std::vector<StepId> voids;
-  for (const Shell& hollow : solid.voids) {
-    const StepId shell = ShellWriter(text, geometry, hollow).write();
-    // Normals of a Body's voids already point into the hollow, as those of the solid must.
-    voids.push_back(text.entity("ORIENTED_CLOSED_SHELL", NoName{}, Raw{"*"}, Ref{shell}, true));
-  }
-  return text.entity("BREP_WITH_VOIDS", NoName{}, Ref{outer}, voids);
-}
-
-std::string iso_time(std::int64_t timestamp) {
-  using namespace std::chrono;
-  const sys_seconds time{seconds{timestamp}};
-  const auto day = floor<days>(time);
-  const year_month_day date{day};
-  const hh_mm_ss clock{time - day};
-  char text[32];
-  std::snprintf(text, sizeof text, "%04d-%02u-%02uT%02d:%02d:%02d", static_cast<int>(date.year()),
-                static_cast<unsigned>(date.month()), static_cast<unsigned>(date.day()),
-                static_cast<int>(clock.hours().count()), static_cast<int>(clock.minutes().count()),
-                static_cast<int>(clock.seconds().count()));
-  return text;
-}
-
-struct SchemaNames {
-  std::string_view file_schema, standard, application;
-  int year;
-};
-SchemaNames names_of(StepSchema schema) {
-  if (schema == StepSchema::ap242)
-    return {"AP242_MANAGED_MODEL_BASED_3D_ENGINEERING_MIM_LF { 1 0 10303 442 1 1 4 }",
-            "ap242_managed_model_based_3d_engineering", "managed model based 3d engineering", 2011};
-  return {"AUTOMOTIVE_DESIGN { 1 0 10303 214 1 1 1 1 }", "automotive_design",
-          "core data for automotive mechanical design processes", 2000};
-}
-
-void write_header(StepText& text, const StepOptions& options) {
-  const Raw nobody{"('')"};
-  text.raw("ISO-10303-21;\nHEADER;\n");
-  text.part("FILE_DESCRIPTION", Raw{"('')"}, Quoted{"2;1"});
-  text.raw(";\n");
-  text.part("FILE_NAME", Quoted{options.name}, Quoted{iso_time(options.timestamp)}, nobody, nobody, Quoted{"meso"},
-            Quoted{"meso"}, NoName{});
-  text.raw(";\n");
-  text.part("FILE_SCHEMA", Raw{"('" + std::string(names_of(options.schema).file_schema) + "')"});
-  text.raw(";\nENDSEC;\nDATA;\n");
-}
-
-StepId write_context(StepText& text) {
-  text.begin_complex();
-  text.part("LENGTH_UNIT");
-  text.part("NAMED_UNIT", Raw{"*"});
-  text.part("SI_UNIT", Raw{".MILLI."}, Raw{".METRE."});
-  const StepId length = text.end_complex();
-  text.begin_complex();
-  text.part("NAMED_UNIT", Raw{"*"});
-  text.part("PLANE_ANGLE_UNIT");
-  text.part("SI_UNIT", Raw{"$"}, Raw{".RADIAN."});
-  const StepId angle = text.end_complex();
-  text.begin_complex();
-  text.part("NAMED_UNIT", Raw{"*"});
-  text.part("SI_UNIT", Raw{"$"}, Raw{".STERADIAN."});
-  text.part("SOLID_ANGLE_UNIT");
-  const StepId solid_angle = text.end_complex();
-  const StepId uncertainty = text.entity("UNCERTAINTY_MEASURE_WITH_UNIT", Raw{"LENGTH_MEASURE(1.E-06)"}, Ref{length},
-                                         Quoted{"distance_accuracy_value"}, Quoted{"confusion accuracy"});
-  text.begin_complex();
-  text.part("GEOMETRIC_REPRESENTATION_CONTEXT", 3);
-  text.part("GLOBAL_UNCERTAINTY_ASSIGNED_CONTEXT", std::vector{uncertainty});
-  text.part("GLOBAL_UNIT_ASSIGNED_CONTEXT", std::vector{length, angle, solid_angle});
-  text.part("REPRESENTATION_CONTEXT", NoName{}, Quoted{"3D"});
-  return text.end_complex();
-}
-
-StepId write_product(StepText& text, const StepOptions& options) {
-  const SchemaNames names = names_of(options.schema);
-  const Quoted name{options.name};
-  const StepId application = text.entity("APPLICATION_CONTEXT", Quoted{names.application});
-  text.entity("APPLICATION_PROTOCOL_DEFINITION", Quoted{"international standard"}, Quoted{names.standard}, names.year,
-              Ref{application});
-  const StepId product_context = text.entity("PRODUCT_CONTEXT", NoName{}, Ref{application}, Quoted{"mechanical"});
-  const StepId product = text.entity("PRODUCT", name, name, NoName{}, std::vector{product_context});
-  text.entity("PRODUCT_RELATED_PRODUCT_CATEGORY", Quoted{"part"}, Raw{"$"}, std::vector{product});
-  const StepId formation = text.entity("PRODUCT_DEFINITION_FORMATION", NoName{}, NoName{}, Ref{product});
-  const StepId definition_context =
-      text.entity("PRODUCT_DEFINITION_CONTEXT", Quoted{"part definition"}, Ref{application}, Quoted{"design"});
-  const StepId definition =
-      text.entity("PRODUCT_DEFINITION", Quoted{"design"}, NoName{}, Ref{formation}, Ref{definition_context});
-  return text.entity("PRODUCT_DEFINITION_SHAPE", NoName{}, NoName{}, Ref{definition});
-}
 
 }  // namespace
 }  // namespace step
 
 StepCounts write_step(const brep::Body& body, const StepOptions& options, ByteSink& sink) {
-  using namespace step;
-  StepText text(sink);
-  StepGeometry geometry(text);
-  write_header(text, options);
-  const StepId shape = write_product(text, options);
-  const StepId context = write_context(text);
-  const StepId origin = text.entity("CARTESIAN_POINT", NoName{}, Vec3{});
-  const StepId z = text.entity("DIRECTION", NoName{}, Vec3{0, 0, 1}),
-               x = text.entity("DIRECTION", NoName{}, Vec3{1, 0, 0});
-  std::vector<StepId> items{text.entity("AXIS2_PLACEMENT_3D", NoName{}, Ref{origin}, Ref{z}, Ref{x})};
-  for (const brep::Solid& solid : body.solids) items.push_back(write_solid(text, geometry, solid));
-  const StepId representation =
-      text.entity("ADVANCED_BREP_SHAPE_REPRESENTATION", Quoted{options.name}, items, Ref{context});
-  text.entity("SHAPE_DEFINITION_REPRESENTATION", Ref{shape}, Ref{representation});
-  text.raw("ENDSEC;\nEND-ISO-10303-21;\n");
-  text.flush();
-  return {text.bytes(), text.entities(), text.ok()};
+  return step::BodyWriter(options, sink).write(body);
 }
 
 }  // namespace meso

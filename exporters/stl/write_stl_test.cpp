@@ -49,6 +49,49 @@ TEST_P(WriteStl, StaysWatertightWhereRoundingFoldsTriangles) {
   EXPECT_EQ(audit.points, 4u);
 }
 
+TEST_P(WriteStl, RangesGiveTheBytesOfTheStream) {
+  TriangleMesh many;
+  for (int i = 0; i < 50; ++i) {
+    const TriangleMesh one = wedge(i % 5 == 0 ? 1e-9 : 0.25, {1.0 + i, 0.5 * i, 1000});
+    const auto first = static_cast<std::uint32_t>(many.points.size());
+    many.points.insert(many.points.end(), one.points.begin(), one.points.end());
+    for (const auto& t : one.triangles) many.triangles.push_back({first + t[0], first + t[1], first + t[2]});
+  }
+  const std::string stream = stl(many, GetParam());
+  for (const std::size_t each : {1u, 7u, 1000u}) {
+    const TriangleRanges ranges{
+        (many.triangles.size() + each - 1) / each, [&](std::size_t range, const TriangleBlockCallback& callback) {
+          TriangleMesh part{many.points, {}};
+          for (std::size_t t = range * each; t < std::min(many.triangles.size(), (range + 1) * each); ++t)
+            part.triangles.push_back(many.triangles[t]);
+          triangles_of(part)(callback);
+        }};
+    for (const unsigned jobs : {1u, 2u, 5u}) {
+      StringSink sink;
+      const StlCounts counts = write_stl(ranges, GetParam(), sink, jobs);
+      EXPECT_TRUE(counts.complete);
+      EXPECT_TRUE(sink.text() == stream) << each << " a range, " << jobs << " jobs";
+      EXPECT_EQ(counts.bytes, stream.size());
+      EXPECT_EQ(counts.left_out, 20u);
+    }
+  }
+}
+
+TEST_P(WriteStl, AFullDiskEndsAllThreads) {
+  struct FullDisk final : ByteSink {
+    bool write(std::string_view) override { return ++writes <= 2; }
+    int writes = 0;
+  };
+  const TriangleMesh mesh = wedge(0.25, {});
+  const TriangleRanges ranges{
+      40, [&](std::size_t, const TriangleBlockCallback& callback) { triangles_of(mesh)(callback); }};
+  for (const unsigned jobs : {1u, 3u}) {
+    FullDisk disk;
+    EXPECT_FALSE(write_stl(ranges, GetParam(), disk, jobs).complete);
+    EXPECT_EQ(disk.writes, 3);
+  }
+}
+
 TEST(WriteStlAscii, LooksLikeStl) {
   const TriangleMesh one{{{0, 0, -0.0}, {2, 0, 0}, {0, 0.1, 0}}, {{0, 1, 2}}};
   EXPECT_EQ(

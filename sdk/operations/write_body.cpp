@@ -34,15 +34,18 @@ std::int64_t source_date_epoch() {
   return text == nullptr ? 0 : parse_integer(text).value_or(0);
 }
 
-std::optional<Written> write_format(Format format, const brep::Body& body, const std::string& name, bool ascii,
-                                    ByteSink& out, DiagnosticSink& sink) {
+std::optional<Written> write_format(Format format, const brep::Body& body, const std::string& name,
+                                    const WriteOptions& options, ByteSink& out, DiagnosticSink& sink) {
+  const unsigned jobs = options.run.jobs;
   switch (format) {
     case Format::mesh:
       break;  // see write_shared_mesh()
     case Format::step:
-      return Written{.bytes = write_step(body, {.name = name, .timestamp = source_date_epoch()}, out).bytes};
+      return Written{.bytes =
+                         write_step(body, {.name = name, .timestamp = source_date_epoch(), .jobs = jobs}, out).bytes};
     case Format::stl: {
-      const StlCounts counts = write_stl(brep::triangles_of(body), ascii ? StlFormat::ascii : StlFormat::binary, out);
+      const StlCounts counts =
+          write_stl(brep::triangle_ranges(body), options.ascii ? StlFormat::ascii : StlFormat::binary, out, jobs);
       return Written{.bytes = counts.bytes, .triangles = counts.triangles};
     }
     case Format::brep: {
@@ -74,10 +77,12 @@ class StoppableSink final : public ByteSink {
 
 }  // namespace
 
-bool is_document(const std::filesystem::path& file) {
+bool is_step_file(const std::filesystem::path& file) {
   const std::string extension = lower_extension(file);
-  return extension != ".step" && extension != ".stp" && !is_mesh_file(file);
+  return extension == ".step" || extension == ".stp";
 }
+
+bool is_document(const std::filesystem::path& file) { return !is_step_file(file) && !is_mesh_file(file); }
 
 std::optional<bool> output_needs_mesh(const std::filesystem::path& file) {
   const auto format = format_of(file);
@@ -95,9 +100,8 @@ std::optional<Written> write_body(const brep::Body& body, const std::filesystem:
   auto out = OutputFile::create(file.string(), options.no_clobber ? ExistingFile::refuse : ExistingFile::replace, sink);
   if (!out) return std::nullopt;
   StoppableSink stoppable(*out, options.run);
-  auto written = *format == Format::mesh
-                     ? write_shared_mesh(body, file, *out)
-                     : write_format(*format, body, file.stem().string(), options.ascii, stoppable, sink);
+  auto written = *format == Format::mesh ? write_shared_mesh(body, file, *out)
+                                         : write_format(*format, body, file.stem().string(), options, stoppable, sink);
   if (options.run.should_stop()) {
     sink.report({.code = options.run.out_of_time() ? Code::limit_time : Code::cancelled});
     return std::nullopt;

@@ -38,6 +38,12 @@ class FlatMap {
     }
     return {values_[slot], fresh};
   }
+  /// Null: there is none. May be called by several threads while nobody adds.
+  [[nodiscard]] const Value* find(std::uint64_t key) const {
+    if (keys_.empty()) return nullptr;
+    const std::size_t slot = slot_of(key);
+    return keys_[slot] == key ? &values_[slot] : nullptr;
+  }
   template <typename Visit>
   void visit_values(Visit visit) const {
     for (std::size_t i = 0; i < keys_.size(); ++i)
@@ -80,17 +86,24 @@ class CellNumbers {
  public:
   [[nodiscard]] std::uint32_t operator()(const Index3& cell) {
     if (last_number_ != none && cell == last_cell_) return last_number_;
-    const auto bits = [](std::int32_t v) { return static_cast<std::uint64_t>(std::bit_cast<std::uint32_t>(v)); };
-    // Flipping a bit moves the one forbidden key from cell (-1, -1) to (-1, 2^31 - 1), which no lattice reaches.
-    const auto [column, new_column] = columns_.find_or_add((bits(cell[0]) << 32 | bits(cell[1])) ^ 0x80000000u);
+    const auto [column, new_column] = columns_.find_or_add(column_key(cell));
     if (new_column) column = static_cast<std::uint32_t>(columns_.size());
     const auto [number, new_cell] = cells_.find_or_add(std::uint64_t{column} << 32 | bits(cell[2]));
     if (new_cell) number = static_cast<std::uint32_t>(cells_.size() - 1);
     last_cell_ = cell;
     return last_number_ = number;
   }
+  /// Null: not mentioned yet.
+  [[nodiscard]] const std::uint32_t* find(const Index3& cell) const {
+    const std::uint32_t* column = columns_.find(column_key(cell));
+    return column != nullptr ? cells_.find(std::uint64_t{*column} << 32 | bits(cell[2])) : nullptr;
+  }
 
  private:
+  static std::uint64_t bits(std::int32_t v) { return std::bit_cast<std::uint32_t>(v); }
+  /// Flipping a bit moves the one forbidden key from cell (-1, -1) to (-1, 2^31 - 1), which no lattice reaches.
+  static std::uint64_t column_key(const Index3& cell) { return (bits(cell[0]) << 32 | bits(cell[1])) ^ 0x80000000u; }
+
   static constexpr std::uint32_t none = ~std::uint32_t{0};
   FlatMap<std::uint32_t> columns_, cells_;
   Index3 last_cell_{};
@@ -102,6 +115,11 @@ class InstanceMap {
  public:
   [[nodiscard]] std::pair<Value&, bool> find_or_add(std::uint32_t item, const Index3& cell) {
     return map_.find_or_add(std::uint64_t{cells_(cell)} << 32 | item);
+  }
+  /// Null: there is none. May be called by several threads while nobody adds.
+  [[nodiscard]] const Value* find(std::uint32_t item, const Index3& cell) const {
+    const std::uint32_t* number = cells_.find(cell);
+    return number != nullptr ? map_.find(std::uint64_t{*number} << 32 | item) : nullptr;
   }
   template <typename Visit>
   void visit_values(Visit visit) const {

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// The topology of one shell: faces, their loops, and the edges and vertices that several of them share.
+
+#include <vector>
+
+#include "meso/brep/instance_map.hpp"
+#include "step_geometry.hpp"
+#include "step_text.hpp"
+
+namespace meso::step {
+
+/// The numbers of what several faces share, in `vertices` and `edges`, and of the faces.
+struct ShellNumbers {
+  brep::InstanceMap<StepId> vertices, edges;
+  std::vector<StepId> faces;
+};
+
+/// Vertices and edges are written when a face first uses them, and never twice.
+class ShellWriter {
+ public:
+  /// Numbers the entities of the shell, in the order of its faces from the first.
+  ShellWriter(StepText& text, StepGeometry& geometry, const brep::Shell& shell, ShellNumbers& numbers)
+      : text_(text),
+        geometry_(geometry),
+        template_(*shell.geometry),
+        pose_(shell),
+        growing_(&numbers),
+        known_(numbers) {}
+  /// Writes faces of a shell whose entities have all been numbered: what has a number beyond the last one written is
+  /// to be written now. So any range of faces can be written if it is known where it begins to count.
+  ShellWriter(StepText& text, StepGeometry& geometry, const brep::Shell& shell, const ShellNumbers& numbers)
+      : text_(text), geometry_(geometry), template_(*shell.geometry), pose_(shell), known_(numbers) {}
+
+  StepId write_face(const brep::FaceInstance& instance);
+
+ private:
+  StepId write_loop(const std::vector<brep::Coedge>& loop, const brep::Index3& cell);
+  StepId edge_id(std::uint32_t index, const brep::Index3& cell);
+  StepId vertex_id(std::uint32_t index, const brep::Index3& cell);
+  StepId write_edge(const brep::EdgeTemplate& edge, const brep::Index3& cell);
+  StepId write_vertex(std::uint32_t index, const brep::Index3& cell);
+
+  StepText& text_;
+  StepGeometry& geometry_;
+  const brep::Template& template_;
+  Pose pose_;
+  ShellNumbers* growing_ = nullptr;
+  const ShellNumbers& known_;
+  std::vector<StepId> bounds_, coedges_;
+};
+
+}  // namespace meso::step
