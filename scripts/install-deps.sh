@@ -16,7 +16,7 @@ packages=(
   # expressions of patterns
   libmuparser-dev
   # vector fields: neighbours, HDF5, VTU
-  libnanoflann-dev libhdf5-dev libexpat1-dev zlib1g-dev
+  libhdf5-dev libexpat1-dev zlib1g-dev
   # exact geometry; OpenCASCADE's CMake package insists on all six
   libocct-foundation-dev libocct-modeling-data-dev libocct-modeling-algorithms-dev
   libocct-data-exchange-dev libocct-ocaf-dev libocct-visualization-dev

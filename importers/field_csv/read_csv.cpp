@@ -32,8 +32,8 @@ fields::Column heading(std::string_view cell) {
 
 class CsvReader {
  public:
-  CsvReader(std::string_view text, const std::string& file, DiagnosticSink& sink)
-      : text_(text), file_(file), sink_(sink) {
+  CsvReader(std::string_view text, const std::string& file, const RunOptions& run, DiagnosticSink& sink)
+      : text_(text), file_(file), run_(run), sink_(sink) {
     if (text_.starts_with("\xEF\xBB\xBF")) text_.remove_prefix(3);
   }
 
@@ -41,7 +41,7 @@ class CsvReader {
     fields::Table table;
     std::vector<double> values;
     std::string_view line;
-    std::size_t columns = 0;
+    std::size_t columns = 0, line_of_first_record = 0;
     while (next_line(line)) {
       if (columns == 0) {
         find_separator(line);
@@ -51,6 +51,7 @@ class CsvReader {
           continue;
         }
       }
+      if (!goes_on(values.capacity() * sizeof(double))) return std::nullopt;
       std::size_t found = 0;
       for (std::size_t at = 0; at <= line.size(); ++found) {
         const std::size_t begin = at;
@@ -62,7 +63,10 @@ class CsvReader {
         }
         values.push_back(*value);
       }
-      if (columns == 0) columns = found;
+      if (columns == 0) {
+        columns = found;
+        line_of_first_record = line_;
+      }
       if (found < columns) {
         fault(line, line.size(), std::to_string(columns) + " cells", std::to_string(found));
         return std::nullopt;
@@ -72,11 +76,26 @@ class CsvReader {
       sink_.report({.code = Code::field_file_empty, .where = {.file = file_}, .args = {"records"}});
       return std::nullopt;
     }
+    // legal, and easily wrong: nothing says which number is which.
+    if (table.columns.empty())
+      sink_.report({.code = Code::field_no_heading,
+                    .where = {.file = file_, .length = 1, .line = line_of_first_record, .column = 1},
+                    .args = {std::to_string(columns)}});
     table.records = fields::Records::of(std::move(values), columns);
     return table;
   }
 
  private:
+  bool goes_on(std::uint64_t bytes) {
+    constexpr std::size_t poll_mask = 0x3FFF;
+    if (bytes > run_.max_memory_bytes) {
+      sink_.report({.code = Code::limit_memory, .args = {std::to_string(run_.max_memory_bytes >> 20) + " MiB"}});
+      return false;
+    }
+    if ((line_ & poll_mask) != 0 || !run_.should_stop()) return true;
+    sink_.report({.code = run_.out_of_time() ? Code::limit_time : Code::cancelled});
+    return false;
+  }
   bool next_line(std::string_view& line) {
     while (at_ < text_.size()) {
       const std::size_t end = std::min(text_.find('\n', at_), text_.size());
@@ -116,6 +135,7 @@ class CsvReader {
 
   std::string_view text_;
   const std::string& file_;
+  const RunOptions& run_;
   DiagnosticSink& sink_;
   std::size_t at_ = 0, line_ = 0;
   char separator_ = ',';
@@ -123,8 +143,9 @@ class CsvReader {
 
 }  // namespace
 
-std::optional<fields::Table> read_field_csv(std::string_view text, const std::string& file, DiagnosticSink& sink) {
-  return CsvReader(text, file, sink).read();
+std::optional<fields::Table> read_field_csv(std::string_view text, const std::string& file, const RunOptions& run,
+                                            DiagnosticSink& sink) {
+  return CsvReader(text, file, run, sink).read();
 }
 
 }  // namespace meso

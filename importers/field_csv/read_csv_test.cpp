@@ -17,14 +17,14 @@ std::vector<double> values(const fields::Table& table) {
 
 fields::Table table_of(const std::string& text) {
   DiagnosticSink sink;
-  auto table = read_field_csv(text, "t.csv", sink);
+  auto table = read_field_csv(text, "t.csv", {}, sink);
   if (!table) throw std::invalid_argument(render(sink.diagnostics().at(0)));
   return *table;
 }
 
 std::string fault_of(const std::string& text) {
   DiagnosticSink sink;
-  EXPECT_FALSE(read_field_csv(text, "t.csv", sink));
+  EXPECT_FALSE(read_field_csv(text, "t.csv", {}, sink));
   EXPECT_EQ(sink.diagnostics().size(), 1U);
   return render(sink.diagnostics().at(0));
 }
@@ -44,6 +44,30 @@ TEST(FieldCsv, NeedsNoHeadingAndTakesOtherSeparators) {
   EXPECT_TRUE(table.columns.empty());
   EXPECT_THAT(values(table), ElementsAre(1, 2, 3, 4, 5, 6));
   EXPECT_THAT(values(table_of("1\t2\n")), ElementsAre(1, 2));
+}
+
+TEST(FieldCsv, ATableWithoutNamesIsReadWithAWarning) {
+  DiagnosticSink sink;
+  ASSERT_TRUE(read_field_csv("# from a script\n1,2\n3,4\n", "t.csv", {}, sink));
+  ASSERT_EQ(sink.diagnostics().size(), 1U);
+  EXPECT_THAT(render(sink.diagnostics()[0]), testing::HasSubstr("t.csv:2:1: warning FIELD_NO_HEADING: the first line "
+                                                                "has no names: its 2 columns are taken in the order"));
+  DiagnosticSink none;
+  ASSERT_TRUE(read_field_csv("a,b\n1,2\n", "t.csv", {}, none));
+  EXPECT_TRUE(none.diagnostics().empty());
+}
+
+TEST(FieldCsv, ObeysItsBudgets) {
+  std::string text = "a,b\n";
+  for (int i = 0; i < 40000; ++i) text += "1,2\n";
+  const auto fault = [&](const RunOptions& run) {
+    DiagnosticSink sink;
+    EXPECT_FALSE(read_field_csv(text, "t.csv", run, sink));
+    return sink.diagnostics().size() == 1 ? sink.diagnostics()[0].code : Code::internal;
+  };
+  EXPECT_EQ(fault({.max_memory_bytes = 100'000}), Code::limit_memory);
+  EXPECT_EQ(fault({.deadline = std::chrono::steady_clock::now() - std::chrono::seconds(1)}), Code::limit_time);
+  EXPECT_EQ(fault({.cancelled = [] { return true; }}), Code::cancelled);
 }
 
 TEST(FieldCsv, NumbersReadBackAsTheyWereWritten) {

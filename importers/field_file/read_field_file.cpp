@@ -16,35 +16,35 @@
 namespace meso {
 namespace {
 
-std::shared_ptr<const fields::MappedFile> open(const FieldFileRequest& request, DiagnosticSink& sink) {
+std::shared_ptr<const ResourceBytes> open(const FieldFileRequest& request, DiagnosticSink& sink) {
   std::string error;
-  auto file = fields::MappedFile::open(request.file, error);
-  if (!file) sink.report({.code = Code::import_unreadable, .args = {request.file.string(), error}});
+  auto file = ResourceBytes::open(request.file, error);
+  if (!file) sink.report({.code = Code::import_unreadable, .args = {request.file.name().string(), error}});
   return file;
 }
 
 std::optional<fields::Records> map_raw(const FieldFileRequest& request,
-                                       const std::shared_ptr<const fields::MappedFile>& file, DiagnosticSink& sink) {
+                                       const std::shared_ptr<const ResourceBytes>& file, DiagnosticSink& sink) {
   const fields::RecordLayout layout{request.offset, request.stride, request.rows, request.columns};
   auto records = fields::Records::map(file, layout);
   if (!records) {
     const auto needed = fields::Records::bytes_needed(layout);
     sink.report({.code = Code::field_file_truncated,
-                 .where = {.file = request.file.string()},
-                 .args = {"after " + std::to_string(file->bytes().size()) + " of " +
+                 .where = {.file = request.file.name().string()},
+                 .args = {"after " + std::to_string(file->view().size()) + " of " +
                           (needed ? std::to_string(*needed) : "2^63 or more") + " bytes"}});
   }
   return records;
 }
 
 [[maybe_unused]] void report_no_reader(const FieldFileRequest& request, DiagnosticSink& sink) {
-  sink.report({.code = Code::field_no_reader, .args = {request.file.string()}});
+  sink.report({.code = Code::field_no_reader, .args = {request.file.name().string()}});
 }
 
 }  // namespace
 
 std::optional<fields::Table> read_field_file(const FieldFileRequest& request, DiagnosticSink& sink) {
-  const std::string name = request.file.string();
+  const std::string name = request.file.name().string();
   if (request.format == ValueFormat::hdf5) {
 #ifdef MESO_FIELD_LIBRARIES
     return read_field_hdf5(request.file, request.path, request.run, sink);
@@ -64,16 +64,16 @@ std::optional<fields::Table> read_field_file(const FieldFileRequest& request, Di
       return table;
     }
     case ValueFormat::csv:
-      return read_field_csv(file->bytes(), name, sink);
+      return read_field_csv(file->view(), name, request.run, sink);
     case ValueFormat::frd:
-      return read_field_frd(file->bytes(), name, request.path, sink);
+      return read_field_frd(file->view(), name, request.path, request.run, sink);
     case ValueFormat::msh:
-      return read_field_msh(file->bytes(), name, request.path, sink);
+      return read_field_msh(file->view(), name, request.path, request.run, sink);
     case ValueFormat::vtk:
-      return read_field_vtk(file->bytes(), name, request.path, sink);
+      return read_field_vtk(file->view(), name, request.path, request.run, sink);
 #ifdef MESO_FIELD_LIBRARIES
     case ValueFormat::vtu:
-      return read_field_vtu(file->bytes(), name, request.path, sink);
+      return read_field_vtu(file->view(), name, request.path, request.run, sink);
 #endif
     default:
       report_no_reader(request, sink);

@@ -16,6 +16,8 @@ namespace {
 
 enum class Form { short_text = 0, long_text = 1, floats = 2, doubles = 3 };
 
+constexpr std::uint64_t bytes_per_node = 128;  // its place twice, its number in the table of numbers
+
 /// Nodes of the element types 1 to 12.
 constexpr std::size_t element_nodes[] = {8, 6, 4, 20, 15, 10, 3, 6, 4, 8, 2, 3};
 
@@ -36,7 +38,8 @@ struct DataSet {
 
 class FrdReader {
  public:
-  FrdReader(std::string_view bytes, const std::string& file, DiagnosticSink& sink) : in_(bytes, file, sink) {}
+  FrdReader(std::string_view bytes, const std::string& file, const RunOptions& run, DiagnosticSink& sink)
+      : in_(bytes, file, run, sink) {}
 
   std::optional<fields::Table> read(const std::string& wanted) {
     while (!in_.at_end()) {
@@ -74,11 +77,11 @@ class FrdReader {
   bool rows(Form form, std::int64_t count, std::size_t width, const Store& store) {
     std::vector<double> values(width);
     if (!is_text(form)) return binary_rows(form, count, values, store);
-    while (true) {
+    for (std::int64_t found = 0;; ++found) {
       if (in_.at_end()) return in_.expected("-3");
       std::string_view line = in_.line();
       const std::string_view key = trimmed(columns(line, 0, 3));
-      if (key == "-3") return true;
+      if (key == "-3") return found == count || in_.expected(std::to_string(count) + " entries before it");
       std::int64_t id = 0;
       if (key != "-1" || !fields::parse_field_integer(columns(line, 3, id_width(form)), id))
         return in_.expected("-1 and a number of a node");
@@ -121,6 +124,7 @@ class FrdReader {
     std::int64_t count = 0;
     Form form{};
     return header(line, count, form) && rows(form, count, 3, [&](std::int64_t id, const std::vector<double>& p) {
+             if (!in_.takes(bytes_per_node)) return false;
              if (!row_of_.emplace(id, places_.size() / 3).second) return in_.expected("nodes with different numbers");
              places_.insert(places_.end(), p.begin(), p.end());
              return true;
@@ -133,6 +137,7 @@ class FrdReader {
     for (std::size_t i = 0; i < (is_tetra ? 4U : 8U); ++i) {
       const auto row = row_of_.find(ids[i]);
       if (row == row_of_.end()) return in_.expected("elements of known nodes");
+      if (!in_.takes(sizeof(std::int64_t))) return false;
       (is_tetra ? tetra_ : hexa_).push_back(static_cast<std::int64_t>(row->second));
     }
     return true;
@@ -200,6 +205,7 @@ class FrdReader {
       if (is_derived != 1) set.components.emplace_back(trimmed(columns(component, 5, 8)));
     }
     const std::size_t width = set.components.size();
+    if (!in_.takes(bytes_of(width))) return false;
     set.values.assign(places_.size() / 3 * width, std::numeric_limits<double>::quiet_NaN());
     const bool good = rows(form, count, width, [&](std::int64_t id, const std::vector<double>& values) {
       const auto row = row_of_.find(id);
@@ -209,11 +215,17 @@ class FrdReader {
     });
     if (!good) return false;
     const auto same = std::find_if(sets_.begin(), sets_.end(), [&](const DataSet& s) { return s.name == set.name; });
-    if (same == sets_.end())
+    if (same == sets_.end()) {
       sets_.push_back(std::move(set));
-    else
+    } else {
+      in_.gives_back(bytes_of(same->components.size()));
       *same = std::move(set);
+    }
     return true;
+  }
+  /// Of a data set: its own numbers, and those of the table.
+  [[nodiscard]] std::uint64_t bytes_of(std::size_t width) const {
+    return 2 * sizeof(double) * std::uint64_t{places_.size() / 3} * width;
   }
 
   std::optional<fields::Table> table(const std::string& wanted) {
@@ -263,8 +275,8 @@ class FrdReader {
 }  // namespace
 
 std::optional<fields::Table> read_field_frd(std::string_view bytes, const std::string& file,
-                                            const std::string& data_set, DiagnosticSink& sink) {
-  return FrdReader(bytes, file, sink).read(data_set);
+                                            const std::string& data_set, const RunOptions& run, DiagnosticSink& sink) {
+  return FrdReader(bytes, file, run, sink).read(data_set);
 }
 
 }  // namespace meso

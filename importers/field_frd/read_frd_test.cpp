@@ -21,7 +21,7 @@ std::string names_of(const fields::Table& table) {
 }
 std::string fault_of(const std::string& bytes, const std::string& data_set = "") {
   DiagnosticSink sink;
-  EXPECT_FALSE(read_field_frd(bytes, "t.frd", data_set, sink));
+  EXPECT_FALSE(read_field_frd(bytes, "t.frd", data_set, {}, sink));
   EXPECT_EQ(sink.diagnostics().size(), 1U);
   return sink.diagnostics().empty() ? "" : render(sink.diagnostics()[0]);
 }
@@ -29,7 +29,7 @@ std::string fault_of(const std::string& bytes, const std::string& data_set = "")
 // Node 10, the cube's middle, as a person reads it in the text.
 TEST(Frd, ReadsNodesElementsAndResults) {
   DiagnosticSink sink;
-  const auto table = read_field_frd(bytes_of("cube.frd"), "cube.frd", "", sink);
+  const auto table = read_field_frd(bytes_of("cube.frd"), "cube.frd", "", {}, sink);
   ASSERT_TRUE(table) << render(sink.diagnostics().at(0));
   EXPECT_EQ(names_of(*table), "x y z D1 D2 D3 SXX SYY SZZ SXY SYZ SZX STR___");
   ASSERT_EQ(table->records.rows(), 9U);
@@ -42,8 +42,8 @@ TEST(Frd, ReadsNodesElementsAndResults) {
 // The text has six digits, the binary form floats: two writers of one result.
 TEST(Frd, BinaryAndTextAgree) {
   DiagnosticSink sink;
-  const auto text = read_field_frd(bytes_of("cube.frd"), "cube.frd", "STRESS", sink);
-  const auto binary = read_field_frd(bytes_of("cube_binary.frd"), "cube_binary.frd", "STRESS", sink);
+  const auto text = read_field_frd(bytes_of("cube.frd"), "cube.frd", "STRESS", {}, sink);
+  const auto binary = read_field_frd(bytes_of("cube_binary.frd"), "cube_binary.frd", "STRESS", {}, sink);
   ASSERT_TRUE(text && binary);
   EXPECT_EQ(names_of(*binary), "x y z SXX SYY SZZ SXY SYZ SZX");
   EXPECT_EQ(binary->tetra, text->tetra);
@@ -57,7 +57,7 @@ TEST(Frd, BinaryAndTextAgree) {
 // the mean of SZZ over the elements' corners is no exact measure, its sign is.
 TEST(Frd, StressesPointTheRightWay) {
   DiagnosticSink sink;
-  const auto table = read_field_frd(bytes_of("cube.frd"), "cube.frd", "", sink);
+  const auto table = read_field_frd(bytes_of("cube.frd"), "cube.frd", "", {}, sink);
   ASSERT_TRUE(table);
   EXPECT_LT(table->records(8, 8), 0);  // SZZ: pressed
 }
@@ -82,7 +82,7 @@ TEST(Frd, NodesMayStandBehindResults) {
   head.resize(74, ' ');
   text.insert(text.rfind(" 9999"), head + "1\n" + node);
   DiagnosticSink sink;
-  const auto table = read_field_frd(text, "t.frd", "STRESS", sink);
+  const auto table = read_field_frd(text, "t.frd", "STRESS", {}, sink);
   ASSERT_TRUE(table) << render(sink.diagnostics().at(0));
   ASSERT_EQ(table->records.rows(), 10U);
   EXPECT_EQ(table->records(9, 2), 3);

@@ -27,6 +27,8 @@ std::size_t nodes_of(std::int64_t type) {
 bool is_tetra(std::int64_t type) { return type == 4 || type == 11; }
 bool is_hexa(std::int64_t type) { return type == 5 || type == 12 || type == 17; }
 
+constexpr std::uint64_t bytes_per_node = 128;  // its place twice, its number in the table of numbers
+
 struct View {
   std::string name;
   std::size_t width = 0;
@@ -35,7 +37,8 @@ struct View {
 
 class MshReader {
  public:
-  MshReader(std::string_view bytes, const std::string& file, DiagnosticSink& sink) : in_(bytes, file, sink) {}
+  MshReader(std::string_view bytes, const std::string& file, const RunOptions& run, DiagnosticSink& sink)
+      : in_(bytes, file, run, sink) {}
 
   std::optional<fields::Table> read(const std::string& wanted) {
     if (!format()) return std::nullopt;
@@ -101,8 +104,8 @@ class MshReader {
   bool real(double& value) { return is_binary_ ? take(&value, sizeof value) : in_.number(value); }
 
   bool add_node(std::int64_t tag) {
-    if (!row_of_.emplace(tag, row_of_.size()).second) return in_.expected("nodes with different numbers");
-    return true;
+    if (!in_.takes(bytes_per_node)) return false;
+    return row_of_.emplace(tag, row_of_.size()).second || in_.expected("nodes with different numbers");
   }
   bool nodes_2() {
     std::int64_t count = 0;
@@ -145,7 +148,7 @@ class MshReader {
     const auto row = row_of_.find(tag);
     if (row == row_of_.end()) return in_.expected("elements of known nodes");
     (tetra ? tetra_ : hexa_).push_back(static_cast<std::int64_t>(row->second));
-    return true;
+    return in_.takes(sizeof(std::int64_t));
   }
   bool corners(std::int64_t type) {
     const std::size_t nodes = nodes_of(type);
@@ -190,7 +193,7 @@ class MshReader {
     for (std::int64_t i = 0; i < count; ++i) {
       std::string_view text = in_.line();
       if (i > 0) continue;
-      if (text.size() >= 2 && text.front() == '"') text = text.substr(1, text.rfind('"') - 1);
+      if (text.size() >= 2 && text.front() == '"' && text.rfind('"') > 0) text = text.substr(1, text.rfind('"') - 1);
       view.name = std::string(text);
     }
     double time = 0;
@@ -208,6 +211,7 @@ class MshReader {
     in_.line();
     if (width != 1 && width != 3 && width != 9) return in_.expected("1, 3 or 9 numbers for each node");
     view.width = static_cast<std::size_t>(width);
+    if (!in_.takes(bytes_of(view.width))) return false;
     view.values.assign(places_.size() / 3 * view.width, std::numeric_limits<double>::quiet_NaN());
     for (std::int64_t n = 0; n < entries; ++n) {
       std::int64_t tag = 0;
@@ -219,11 +223,17 @@ class MshReader {
       }
     }
     const auto same = std::find_if(views_.begin(), views_.end(), [&](const View& v) { return v.name == view.name; });
-    if (same == views_.end())
+    if (same == views_.end()) {
       views_.push_back(std::move(view));
-    else
+    } else {
+      in_.gives_back(bytes_of(same->width));
       *same = std::move(view);
+    }
     return true;
+  }
+  /// Of a view: its own numbers, and those of the table.
+  [[nodiscard]] std::uint64_t bytes_of(std::size_t width) const {
+    return 2 * sizeof(double) * std::uint64_t{places_.size() / 3} * width;
   }
 
   static std::string suffix(std::size_t width, std::size_t i) {
@@ -272,8 +282,8 @@ class MshReader {
 }  // namespace
 
 std::optional<fields::Table> read_field_msh(std::string_view bytes, const std::string& file, const std::string& view,
-                                            DiagnosticSink& sink) {
-  return MshReader(bytes, file, sink).read(view);
+                                            const RunOptions& run, DiagnosticSink& sink) {
+  return MshReader(bytes, file, run, sink).read(view);
 }
 
 }  // namespace meso

@@ -17,7 +17,7 @@ std::string bytes_of(const std::string& name) {
 }
 std::string fault_of(const std::string& bytes, const std::string& view = "") {
   DiagnosticSink sink;
-  EXPECT_FALSE(read_field_msh(bytes, "t.msh", view, sink));
+  EXPECT_FALSE(read_field_msh(bytes, "t.msh", view, {}, sink));
   EXPECT_EQ(sink.diagnostics().size(), 1U);
   return sink.diagnostics().empty() ? "" : render(sink.diagnostics()[0]);
 }
@@ -27,7 +27,7 @@ class Msh : public testing::TestWithParam<const char*> {};
 // The views were written as functions of the place.
 TEST_P(Msh, ValuesAreTheFunctionsThatWereWritten) {
   DiagnosticSink sink;
-  const auto table = read_field_msh(bytes_of(GetParam()), GetParam(), "", sink);
+  const auto table = read_field_msh(bytes_of(GetParam()), GetParam(), "", {}, sink);
   ASSERT_TRUE(table) << render(sink.diagnostics().at(0));
   ASSERT_EQ(table->columns.size(), 7U);
   EXPECT_EQ(table->columns[3].name, "f_value");
@@ -43,7 +43,7 @@ TEST_P(Msh, ValuesAreTheFunctionsThatWereWritten) {
 // The tetrahedra fill the box of volume 2.
 TEST_P(Msh, TetrahedraFillTheBox) {
   DiagnosticSink sink;
-  const auto table = read_field_msh(bytes_of(GetParam()), GetParam(), "v", sink);
+  const auto table = read_field_msh(bytes_of(GetParam()), GetParam(), "v", {}, sink);
   ASSERT_TRUE(table);
   EXPECT_EQ(table->columns.size(), 6U);
   double volume = 0;
@@ -75,7 +75,7 @@ TEST(MshNodes, MayStandBehindValues) {
   const auto table = read_field_msh(
       "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$NodeData\n1\n\"t\"\n1\n0\n3\n0\n1\n0\n$EndNodeData\n"
       "$Nodes\n2\n1 0 0 0\n2 1 0 0\n$EndNodes\n",
-      "t.msh", "", sink);
+      "t.msh", "", {}, sink);
   ASSERT_TRUE(table);
   ASSERT_EQ(table->records.rows(), 2U);
   EXPECT_TRUE(std::isnan(table->records(0, 3)) && std::isnan(table->records(1, 3)));

@@ -31,8 +31,8 @@ T from_big_endian(const char* bytes) {
 
 class VtkReader {
  public:
-  VtkReader(std::string_view bytes, const std::string& file, DiagnosticSink& sink)
-      : in_(bytes, file, sink), size_(bytes.size()) {}
+  VtkReader(std::string_view bytes, const std::string& file, const RunOptions& run, DiagnosticSink& sink)
+      : in_(bytes, file, run, sink), size_(bytes.size()) {}
 
   std::optional<fields::Table> read(const std::string& wanted) {
     if (!in_.line().starts_with("# vtk DataFile Version")) {
@@ -61,12 +61,15 @@ class VtkReader {
     return true;
   }
 
-  template <class Store>
+  bool text(double& value) { return in_.number(value); }
+  bool text(std::int64_t& value) { return in_.integer(value); }
+  /// `T`: what the numbers become, double or int64_t.
+  template <class T, class Store>
   bool block(const std::string& type, std::int64_t count, const Store& store) {
     if (!is_binary_) {
       for (std::int64_t i = 0; i < count; ++i) {
-        double value = 0;
-        if (!in_.number(value)) return false;
+        T value = 0;
+        if (!text(value) || !in_.takes(2 * sizeof value)) return false;
         store(value);
       }
       return true;
@@ -86,16 +89,17 @@ class VtkReader {
   template <class T, class Store>
   bool binary(std::int64_t count, const Store& store) {
     const std::string_view bytes = in_.block(static_cast<std::uint64_t>(count) * sizeof(T), "numbers");
-    if (bytes.empty() && count > 0) return false;
+    if (count > 0 && (bytes.empty() || !in_.takes(2 * sizeof(double) * static_cast<std::uint64_t>(count))))
+      return false;
     for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i)
       store(from_big_endian<T>(bytes.data() + i * sizeof(T)));
     return true;
   }
   bool numbers(const std::string& type, std::int64_t count, std::vector<double>& values) {
-    return block(type, count, [&](auto v) { values.push_back(static_cast<double>(v)); });
+    return block<double>(type, count, [&](auto v) { values.push_back(static_cast<double>(v)); });
   }
   bool integers(const std::string& type, std::int64_t count, std::vector<std::int64_t>& values) {
-    return block(type, count, [&](auto v) { values.push_back(static_cast<std::int64_t>(v)); });
+    return block<std::int64_t>(type, count, [&](auto v) { values.push_back(vtk::whole_number(v)); });
   }
 
   /// Everything up to POINT_DATA.
@@ -141,6 +145,7 @@ class VtkReader {
     double points = 1;
     for (const std::int64_t n : size) points *= static_cast<double>(n);
     if (is_grid && points > static_cast<double>(size_)) return in_.expected("data for every point");
+    if (is_grid && !in_.takes(static_cast<std::uint64_t>(points) * 6 * sizeof(double))) return false;
     if (kind_ == "structured_points") {
       content_.is_regular = true;
       for (std::size_t a = 0; a < 3; ++a) {
@@ -269,8 +274,8 @@ class VtkReader {
 }  // namespace
 
 std::optional<fields::Table> read_field_vtk(std::string_view bytes, const std::string& file, const std::string& array,
-                                            DiagnosticSink& sink) {
-  return VtkReader(bytes, file, sink).read(array);
+                                            const RunOptions& run, DiagnosticSink& sink) {
+  return VtkReader(bytes, file, run, sink).read(array);
 }
 
 }  // namespace meso

@@ -15,7 +15,8 @@ std::string bytes_of(const std::string& name) {
 }
 std::optional<fields::Table> read(const std::string& bytes, const std::string& name, const std::string& array,
                                   DiagnosticSink& sink) {
-  return name.ends_with(".vtu") ? read_field_vtu(bytes, name, array, sink) : read_field_vtk(bytes, name, array, sink);
+  return name.ends_with(".vtu") ? read_field_vtu(bytes, name, array, {}, sink)
+                                : read_field_vtk(bytes, name, array, {}, sink);
 }
 std::string fault_of(const std::string& bytes, const std::string& name, const std::string& array = "") {
   DiagnosticSink sink;

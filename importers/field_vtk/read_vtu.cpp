@@ -28,8 +28,8 @@ using Attributes = std::map<std::string, std::string, std::less<>>;
 
 class VtuReader {
  public:
-  VtuReader(std::string_view bytes, const std::string& file, DiagnosticSink& sink)
-      : in_(bytes, file, sink), bytes_(bytes), file_(file), sink_(sink) {}
+  VtuReader(std::string_view bytes, const std::string& file, const RunOptions& run, DiagnosticSink& sink)
+      : in_(bytes, file, run, sink), bytes_(bytes), file_(file), run_(run), sink_(sink) {}
 
   std::optional<fields::Table> read(const std::string& wanted) {
     if (!parse()) return std::nullopt;
@@ -78,14 +78,20 @@ class VtuReader {
     XML_SetUserData(parser.get(), this);
     XML_SetElementHandler(parser.get(), &VtuReader::begin, &VtuReader::end);
     XML_SetCharacterDataHandler(parser.get(), &VtuReader::characters);
+    // Entities could make much out of little, or name other files.
+    XML_SetStartDoctypeDeclHandler(parser.get(), &VtuReader::doctype);
+    parser_ = parser.get();
     constexpr std::size_t piece = std::size_t{1} << 24;
     bool good = true;
     for (std::size_t at = 0; good && at < xml.size(); at += piece) {
+      if (in_.is_stopped()) return false;
       const std::string_view part = xml.substr(at, piece);
       good = XML_Parse(parser.get(), part.data(), static_cast<int>(part.size()), 0) == XML_STATUS_OK;
     }
     good = good && XML_Parse(parser.get(), closing.data(), static_cast<int>(closing.size()), 1) == XML_STATUS_OK;
     if (good) return true;
+    if (in_.is_stopped()) return false;
+    if (has_doctype_) return in_.unsupported("a DOCTYPE");
     sink_.report({.code = Code::field_file_syntax,
                   .where = {.file = file_,
                             .line = static_cast<std::size_t>(XML_GetCurrentLineNumber(parser.get())),
@@ -123,6 +129,11 @@ class VtuReader {
       arrays_.push_back(std::move(array));
       is_in_array_ = true;
     }
+  }
+  static void doctype(void* self, const XML_Char*, const XML_Char*, const XML_Char*, int) {
+    auto& reader = *static_cast<VtuReader*>(self);
+    reader.has_doctype_ = true;
+    XML_StopParser(reader.parser_, XML_FALSE);
   }
   static void end(void* self, const XML_Char* name) {
     auto& reader = *static_cast<VtuReader*>(self);
@@ -212,7 +223,9 @@ class VtuReader {
       const std::uint64_t size = i + 1 == blocks && last > 0 ? last : block;
       const auto in_size = static_cast<std::size_t>(header(head, 3 + static_cast<std::size_t>(i)));
       // zlib never makes a byte out of less than a thousandth of one: a header that says so lies.
-      if (size > 1100 * (in_size + 1)) return fault(array, "blocks that cannot hold what their header states");
+      if (in_size > data.size() - begin || size > 1100 * (in_size + 1))
+        return fault(array, "blocks that cannot hold what their header states");
+      if (!in_.takes(size) || in_.is_stopped()) return false;
       const std::size_t old = bytes.size();
       bytes.resize(old + static_cast<std::size_t>(size));
       uLongf written = static_cast<uLongf>(size);
@@ -228,6 +241,7 @@ class VtuReader {
   template <class T, class Store>
   bool each(const DataArray& array, const std::string& bytes, const Store& store) {
     if (bytes.size() % sizeof(T) != 0) return fault(array, "a part of a number");
+    if (!in_.takes(bytes.size() / sizeof(T) * 2 * sizeof(double))) return false;
     for (std::size_t i = 0; i < bytes.size(); i += sizeof(T)) {
       T value;
       std::memcpy(&value, bytes.data() + i, sizeof value);
@@ -237,14 +251,15 @@ class VtuReader {
   }
   template <class Store>
   bool numbers(const DataArray& array, const Store& put) {
+    if (in_.is_stopped()) return false;
     if (array.format == "ascii") {
-      fields::FileCursor text(array.text, file_ + ", array '" + array.name + "'", sink_);
+      fields::FileCursor text(array.text, file_ + ", array '" + array.name + "'", run_, sink_);
       while (!text.peek().empty()) {
         double value = 0;
-        if (!text.number(value)) return false;
+        if (!text.number(value) || !text.takes(2 * sizeof value)) return false;
         put(value);
       }
-      return true;
+      return in_.takes(2 * sizeof(double) * array.text.size() / 2);
     }
     std::string bytes;
     if (array.format != "binary" && array.format != "appended")
@@ -266,7 +281,7 @@ class VtuReader {
   bool store(const DataArray& array) {
     const auto reals = [](std::vector<double>& to) { return [&to](auto v) { to.push_back(static_cast<double>(v)); }; };
     const auto wholes = [](std::vector<std::int64_t>& to) {
-      return [&to](auto v) { to.push_back(static_cast<std::int64_t>(v)); };
+      return [&to](auto v) { to.push_back(vtk::whole_number(v)); };
     };
     if (array.group == "Points") return numbers(array, reals(content_.places));
     if (array.group == "Cells") {
@@ -283,7 +298,10 @@ class VtuReader {
   fields::FileCursor in_;
   std::string_view bytes_, appended_;
   std::string file_;
+  const RunOptions& run_;
   DiagnosticSink& sink_;
+  XML_Parser parser_ = nullptr;
+  bool has_doctype_ = false;
   std::string type_, compressor_, group_;
   bool is_big_endian_ = false, is_appended_raw_ = false, is_in_array_ = false;
   std::size_t header_bytes_ = 4;
@@ -295,8 +313,8 @@ class VtuReader {
 }  // namespace
 
 std::optional<fields::Table> read_field_vtu(std::string_view bytes, const std::string& file, const std::string& array,
-                                            DiagnosticSink& sink) {
-  return VtuReader(bytes, file, sink).read(array);
+                                            const RunOptions& run, DiagnosticSink& sink) {
+  return VtuReader(bytes, file, run, sink).read(array);
 }
 
 }  // namespace meso

@@ -2,6 +2,7 @@
 #include "vtk_table.hpp"
 
 #include <algorithm>
+#include <functional>
 
 namespace meso::vtk {
 namespace {
@@ -44,6 +45,13 @@ std::optional<fields::Table> make_table(Content content, const std::string& want
   const std::size_t rows = content.places.size() / 3;
   if (rows == 0) {
     in.empty("points");
+    return std::nullopt;
+  }
+  for (const std::vector<double>& nodes : content.grid) {
+    if (std::all_of(nodes.begin(), nodes.end(), [](double v) { return std::isfinite(v); }) &&
+        std::adjacent_find(nodes.begin(), nodes.end(), std::greater_equal<>()) == nodes.end())
+      continue;
+    in.unsupported("a grid whose coordinates do not ascend");
     return std::nullopt;
   }
   std::erase_if(content.arrays, [&](const Array& a) { return !wanted.empty() && a.name != wanted; });

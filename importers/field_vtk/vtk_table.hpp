@@ -2,6 +2,7 @@
 #pragma once
 // What both forms of VTK files gather, and the table that it becomes. Private.
 
+#include <cmath>
 #include <optional>
 #include <string>
 #include <vector>
@@ -10,6 +11,19 @@
 #include "meso/fields/table.hpp"
 
 namespace meso::vtk {
+
+/// A number of a point or a place in a list; -1, which no list has, where a file has something else there.
+template <class T>
+[[nodiscard]] std::int64_t whole_number(T value) {
+  if constexpr (std::is_floating_point_v<T>) {
+    constexpr double largest = 9007199254740992;  // 2^53
+    return std::abs(static_cast<double>(value)) < largest && value == std::trunc(value)
+               ? static_cast<std::int64_t>(value)
+               : -1;
+  } else {
+    return static_cast<std::int64_t>(value) < 0 ? -1 : static_cast<std::int64_t>(value);
+  }
+}
 
 struct Array {
   std::string name;

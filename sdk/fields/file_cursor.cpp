@@ -7,7 +7,8 @@
 namespace meso::fields {
 namespace {
 
-constexpr std::size_t longest_quote = 40;  // bytes of the file in a message
+constexpr std::size_t longest_quote = 40;    // bytes of the file in a message
+constexpr std::uint64_t poll_mask = 0xFFFF;  // words and lines between two looks at the clock
 
 bool is_space(char c) { return c == ' ' || c == '\n' || c == '\t' || c == '\r' || c == '\f' || c == '\v'; }
 
@@ -34,16 +35,42 @@ void FileCursor::skip_space() {
   while (at_ < bytes_.size() && is_space(bytes_[at_])) ++at_;
 }
 
+void FileCursor::poll() {
+  if ((++steps_ & poll_mask) == 0) (void)is_stopped();
+}
+
+bool FileCursor::is_stopped() {
+  if (!is_stopped_ && run_.should_stop()) stop({.code = run_.out_of_time() ? Code::limit_time : Code::cancelled});
+  return is_stopped_;
+}
+
+void FileCursor::stop(Diagnostic reason) {
+  sink_.report(std::move(reason));
+  is_stopped_ = true;
+  at_ = bytes_.size();
+}
+
+bool FileCursor::takes(std::uint64_t bytes) {
+  poll();
+  if (is_stopped_) return false;
+  held_ += bytes;
+  if (bytes <= run_.max_memory_bytes && held_ <= run_.max_memory_bytes) return true;
+  stop({.code = Code::limit_memory, .args = {std::to_string(run_.max_memory_bytes >> 20) + " MiB"}});
+  return false;
+}
+
 std::string_view FileCursor::line() {
+  poll();
   last_ = std::min(at_, bytes_.size());
   const std::size_t end = std::min(bytes_.find('\n', last_), bytes_.size());
   std::string_view text = bytes_.substr(last_, end - last_);
   if (text.ends_with('\r')) text.remove_suffix(1);
-  at_ = end + 1;
+  at_ = std::min(end + 1, bytes_.size());
   return text;
 }
 
 std::string_view FileCursor::word() {
+  poll();
   skip_space();
   last_ = at_;
   while (at_ < bytes_.size() && !is_space(bytes_[at_])) ++at_;
@@ -51,12 +78,17 @@ std::string_view FileCursor::word() {
 }
 
 std::string_view FileCursor::peek() const {
-  FileCursor ahead = *this;
-  return ahead.word();
+  std::size_t begin = at_;
+  while (begin < bytes_.size() && is_space(bytes_[begin])) ++begin;
+  std::size_t end = begin;
+  while (end < bytes_.size() && !is_space(bytes_[end])) ++end;
+  return begin < bytes_.size() ? bytes_.substr(begin, end - begin) : std::string_view();
 }
 
 std::string_view FileCursor::block(std::uint64_t size, std::string_view what) {
+  poll();
   last_ = std::min(at_, bytes_.size());
+  if (is_stopped_) return {};
   if (size > bytes_.size() - last_) {
     sink_.report({.code = Code::field_file_truncated,
                   .where = here(),
@@ -76,6 +108,7 @@ bool FileCursor::count(std::int64_t& value, std::int64_t largest) {
 }
 
 bool FileCursor::expected(std::string what) {
+  if (is_stopped_) return false;
   const bool is_cut = last_ > 0 && bytes_.find('\n', last_) == std::string_view::npos;
   if (last_ >= bytes_.size() || is_cut) {
     sink_.report({.code = Code::field_file_truncated, .where = here(), .args = {"where " + what + " should be"}});
@@ -90,11 +123,13 @@ bool FileCursor::expected(std::string what) {
 }
 
 bool FileCursor::unsupported(std::string what) {
+  if (is_stopped_) return false;
   sink_.report({.code = Code::field_file_unsupported, .where = here(), .args = {std::move(what)}});
   return false;
 }
 
 bool FileCursor::empty(std::string what) {
+  if (is_stopped_) return false;
   sink_.report({.code = Code::field_file_empty, .where = {.file = file_}, .args = {std::move(what)}});
   return false;
 }

@@ -2,24 +2,27 @@
 #pragma once
 // Walks through the bytes of a field file: words, lines, numbers, binary blocks; and says where it is wrong.
 //
-//   FileCursor in(bytes, "stress.vtk", sink);
+//   FileCursor in(bytes, "stress.vtk", run, sink);
 //   double x = 0;
 //   if (!in.number(x)) return std::nullopt;   // FIELD_FILE_SYNTAX or FIELD_FILE_TRUNCATED was reported, with the line
 //
-// Numbers have a decimal point, in any locale. Views stay valid as long as the bytes. Values; one thread.
+// Numbers have a decimal point, in any locale. A walk that is asked to stop, or told to hold more than the budget,
+// reports that once, stands at the end of the file and says nothing more. Views stay valid as long as the bytes.
+// Values; one thread.
 
 #include <cstdint>
 #include <string>
 #include <string_view>
 
 #include "meso/base/diagnostic.hpp"
+#include "meso/base/run_options.hpp"
 
 namespace meso::fields {
 
 class FileCursor {
  public:
-  FileCursor(std::string_view bytes, std::string file, DiagnosticSink& sink)
-      : bytes_(bytes), file_(std::move(file)), sink_(sink) {}
+  FileCursor(std::string_view bytes, std::string file, const RunOptions& run, DiagnosticSink& sink)
+      : bytes_(bytes), file_(std::move(file)), run_(run), sink_(sink) {}
 
   [[nodiscard]] bool at_end() const { return at_ >= bytes_.size(); }
   [[nodiscard]] std::size_t position() const { return at_; }
@@ -34,6 +37,12 @@ class FileCursor {
   /// Exactly so many bytes; reports and gives an empty view if there are fewer.
   std::string_view block(std::uint64_t size, std::string_view what);
 
+  /// Looks at the clock now, before something long; the walk itself does so every 65536 words or lines.
+  [[nodiscard]] bool is_stopped();
+  /// Says that so much more memory will be needed than before; LIMIT_MEMORY and false beyond the budget.
+  [[nodiscard]] bool takes(std::uint64_t bytes);
+  void gives_back(std::uint64_t bytes) { held_ -= bytes; }
+
   [[nodiscard]] bool number(double& value);
   [[nodiscard]] bool integer(std::int64_t& value);
   /// An integer from 0 to `largest`.
@@ -46,12 +55,17 @@ class FileCursor {
 
  private:
   void skip_space();
+  void poll();
+  void stop(Diagnostic reason);
   [[nodiscard]] SourceSpan here() const;
 
   std::string_view bytes_;
   std::string file_;
+  const RunOptions& run_;
   DiagnosticSink& sink_;
   std::size_t at_ = 0, last_ = 0;
+  std::uint64_t steps_ = 0, held_ = 0;
+  bool is_stopped_ = false;
 };
 
 /// A number in whole; with blanks around it. nan and inf are numbers.
