@@ -18,6 +18,9 @@ void add_verbs(CLI::App& app, meso::cli::Run& run) {
   add_validate(app, run);
   add_info(app, run);
   add_canonical(app, run);
+#ifdef MESO_CLI_PACKAGES
+  add_package(app, run);
+#endif
 #ifdef MESO_CLI_EVAL
   add_eval(app, run);
   add_field(app, run);

@@ -46,6 +46,7 @@ void add_no_clobber_flag(CLI::App& verb, Flags& flags);
 void add_engine_flag(CLI::App& verb, Flags& flags);
 void add_mesh_flags(CLI::App& verb, Flags& flags);   ///< --deflection --angle
 void add_work_flags(CLI::App& verb, Flags& flags);   ///< --jobs --timeout --max-memory --progress
+void add_memory_flag(CLI::App& verb, Flags& flags);  ///< --max-memory alone
 void add_limit_flags(CLI::App& verb, Flags& flags);  ///< these and --max-cells
 
 /// One call of one verb.
@@ -99,6 +100,7 @@ class Run {
 // Each verb stands in a file of its own and registers itself with these.
 void add_validate(CLI::App& app, Run& run);
 void add_canonical(CLI::App& app, Run& run);
+void add_package(CLI::App& app, Run& run);
 void add_formats(CLI::App& app, Run& run);
 void add_info(CLI::App& app, Run& run);
 void add_eval(CLI::App& app, Run& run);

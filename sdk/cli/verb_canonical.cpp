@@ -15,8 +15,9 @@ namespace {
 
 int canonical(Run& run, const std::string& in, const std::string& out) {
   if (out.empty()) run.refuse_without_effect({{"--no-clobber", run.flags.no_clobber}}, "with an output file");
+  const RunOptions options = run.options();
   if (run.sink.has_errors()) return run.finish();
-  const auto read = open_document(in, {}, run.sink);
+  const auto read = open_document(in, options, run.sink);
   if (!read) return run.finish();
   const std::string bytes = canonical_document(read->document);
   if (out.empty()) {
@@ -37,8 +38,9 @@ int canonical(Run& run, const std::string& in, const std::string& out) {
 void add_canonical(CLI::App& app, Run& run) {
   CLI::App* verb = app.add_subcommand("canonical", "Write the one canonical byte form of a document");
   static std::string in, out;
-  verb->add_option("IN", in, "Document (.meso)")->required();
+  verb->add_option("IN", in, "Document (.meso, .mesoz)")->required();
   verb->add_option("OUT", out, "Output file; standard output if absent");
+  add_memory_flag(*verb, run.flags);
   add_no_clobber_flag(*verb, run.flags);
   verb->callback([&run] { run.action = [&run] { return canonical(run, in, out); }; });
 }

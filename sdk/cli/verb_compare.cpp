@@ -40,6 +40,19 @@ Json row_json(const ComparisonRow& r) {
           {"seconds", seconds_json(r.seconds)}};
 }
 
+/// A case whose files are made by its own script, and are not there.
+struct NotMade {
+  fs::path document, script;
+  std::string missing;
+};
+std::optional<NotMade> not_made(const fs::path& document) {
+  NotMade out{document, document.parent_path() / "run.sh", operations::missing_file(document)};
+  return !out.missing.empty() && fs::exists(out.script) ? std::optional(std::move(out)) : std::nullopt;
+}
+Json row_json(const NotMade& r) {
+  return {{"name", r.document.stem().string()}, {"missing", r.missing}, {"madeBy", r.script.string()}};
+}
+
 void print_table(const std::vector<ComparisonRow>& rows) {
   fmt::print("{:<22} {:>7} {:>10} {:>12} {:>12} {:>10} {:>8} {:>8} {:>8} {:>10} {:>6} {:>6} {:>7}\n", "case", "cells",
              "macro STEP", "part STEP", "ASCII STL", "framework", "packed", "vsSTEP%", "vsSTL%", "triangles", "defl",
@@ -165,18 +178,30 @@ int compare_verb(Run& run, const CompareArguments& arguments) {
     files = *variants;
   }
   std::vector<ComparisonRow> rows;
+  std::vector<NotMade> missing;
   for (const fs::path& file : files) {
     if (run.sink.has_errors()) break;
+    if (auto row = not_made(file)) {
+      run.sink.report({.code = Code::compare_not_made,
+                       .where = {.file = file.string()},
+                       .args = {file.string(), row->missing, row->script.string()}});
+      missing.push_back(std::move(*row));
+      continue;
+    }
     if (auto row = operations::compare(file, *options, run.sink)) rows.push_back(std::move(*row));
   }
   if (!run.sink.has_errors() && !stem.empty()) (void)write_plots(rows, stem, folder, run);
   if (run.flags.json) {
     Json list = Json::array();
     for (const ComparisonRow& row : rows) list.push_back(row_json(row));
+    for (const NotMade& row : missing) list.push_back(row_json(row));
     fmt::print("{}\n", list.dump(2));
   } else if (!rows.empty()) {
     print_table(rows);
   }
+  if (!run.flags.json)
+    for (const NotMade& row : missing)
+      fmt::print("{:<22} not made; run {}\n", row.document.stem().string(), row.script.string());
   return run.finish();
 }
 
@@ -185,7 +210,7 @@ int compare_verb(Run& run, const CompareArguments& arguments) {
 void add_compare(CLI::App& app, Run& run) {
   CLI::App* verb = app.add_subcommand("compare", "Bytes of documents against bytes of their STEP and STL");
   static CompareArguments arguments;
-  verb->add_option("DOC", arguments.documents, "Documents (.meso)")->required();
+  verb->add_option("DOC", arguments.documents, "Documents (.meso, .mesoz)")->required();
   verb->add_option("--series", arguments.series,
                    "One row per value of a parameter; writes the variants and two plots (SVG)")
       ->type_name("ID=V,V,...");

@@ -17,6 +17,9 @@ struct Format {
 
 constexpr Format formats[] = {
     {".meso", "Meso document", true, true, "convert's input; canonical writes it"},
+#ifdef MESO_CLI_PACKAGES
+    {".mesoz", "package of a document", true, true, "read wherever a document is; written by pack"},
+#endif
 #ifdef MESO_CLI_BREP
     {".step", "STEP AP214 (also .stp)", true, true, "exact; imported by documents, written by convert"},
     {".brep", "OpenCASCADE B-rep", false, true, "exact"},

@@ -124,7 +124,7 @@ int info_verb(Run& run, const InfoArguments& arguments) {
 void add_info(CLI::App& app, Run& run) {
   CLI::App* verb = app.add_subcommand("info", "What a document contains; --estimate: what it would become");
   static InfoArguments arguments;
-  verb->add_option("FILE", arguments.file, "Document (.meso)")->required();
+  verb->add_option("FILE", arguments.file, "Document (.meso, .mesoz)")->required();
   add_json_flag(*verb, run.flags);
 #ifdef MESO_CLI_EVAL
   add_set_flag(*verb, run.flags);

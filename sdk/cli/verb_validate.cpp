@@ -10,11 +10,13 @@ namespace meso::cli {
 void add_validate(CLI::App& app, Run& run) {
   CLI::App* verb = app.add_subcommand("validate", "Check a document against every rule of the format");
   static std::string file;
-  verb->add_option("FILE", file, "Document (.meso)")->required();
+  verb->add_option("FILE", file, "Document (.meso, .mesoz)")->required();
+  add_memory_flag(*verb, run.flags);
   add_json_flag(*verb, run.flags);
   verb->callback([&run] {
     run.action = [&run] {
-      const bool valid = run.open(file).has_value();
+      (void)run.options();
+      const bool valid = !run.sink.has_errors() && run.open(file).has_value();
       if (valid) fmt::print(stderr, "{}: valid\n", file);
       Json report;
       report["file"] = file;

@@ -5,6 +5,7 @@
 
 #include "field_document.hpp"
 #include "meso/import_field_file/read_field_file.hpp"
+#include "meso/package/open_document.hpp"
 #include "meso/xml/write.hpp"
 #ifdef MESO_FIELD_LIBRARIES
 #include "meso/import_field_hdf5/read_hdf5.hpp"
@@ -21,7 +22,9 @@ std::optional<fields::Table> read(const fs::path& in, const FieldOptions& option
         {.code = Code::usage, .args = {"'" + in.string() + "': field reads .csv .h5 .hdf5 .vtk .vtu .frd .msh"}});
     return std::nullopt;
   }
-  auto table = read_field_file({.file = in, .format = *format, .path = options.data_set, .run = options.run}, sink);
+  const auto file = open_resource(in, options.run, sink);
+  if (!file) return std::nullopt;
+  auto table = read_field_file({.file = *file, .format = *format, .path = options.data_set, .run = options.run}, sink);
   if (!table) return std::nullopt;
   for (std::size_t c = table->columns.size(); c < table->records.columns(); ++c)
     table->columns.push_back({"c" + std::to_string(c + 1), {}});

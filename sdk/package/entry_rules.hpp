@@ -19,10 +19,10 @@ inline constexpr std::string_view thumbnail_entry = "thumbnail.png";
 /// An entry at the root whose extension is .meso.
 [[nodiscard]] bool is_document_name(std::string_view name);
 
-/// What is wrong with the name of an entry; empty: nothing.
+/// What is wrong with the name of an entry; empty: nothing.
 [[nodiscard]] std::string name_fault(std::string_view name);
 
-/// Names that could not all be files of one folder.
+/// Names that could not all be files of one folder.
 class EntryNames {
  public:
   /// What is wrong with one more entry; empty: nothing.

@@ -110,7 +110,7 @@ TEST_F(HostilePackage, TwoEntriesOfOneName) {
   std::string patched = bytes();
   replace_all(patched, "c.step", "b.step");
   write_bytes(patched);
-  EXPECT_THAT(fault(), testing::HasSubstr("another entry has this name"));
+  EXPECT_THAT(fault(), testing::HasSubstr("two of its entries have one name"));
 }
 
 TEST_F(HostilePackage, LinksAndEncryptedEntries) {

@@ -43,6 +43,24 @@ std::optional<OpenedDocument> open_document(const std::filesystem::path& file, c
   return with(read_document_file(file, sink), resources_in_folder(file.parent_path()));
 }
 
+std::optional<Resource> open_resource(const std::filesystem::path& file, [[maybe_unused]] const RunOptions& run,
+                                      DiagnosticSink& sink) {
+  std::filesystem::path container;
+  for (const auto& step : file) {
+    container /= step;
+    std::error_code error;
+    if (container == file || !is_package(container) || !std::filesystem::is_regular_file(container, error)) continue;
+#ifdef MESO_WITH_PACKAGES
+    const auto package = Package::read(container, run, sink);
+    return package ? package->find(file.lexically_relative(container).generic_string()) : std::nullopt;
+#else
+    sink.report({.code = Code::package_not_built, .args = {container.string()}});
+    return std::nullopt;
+#endif
+  }
+  return Resource(file);
+}
+
 std::optional<CheckedDocument> open_checked_document(const std::filesystem::path& file, const RunOptions& run,
                                                      DiagnosticSink& sink) {
   auto opened = open_document(file, run, sink);

@@ -61,7 +61,9 @@ class PackageReader {
     if (archive_) return true;
     zip_error_t why;
     zip_error_init_with_code(&why, code);
-    const std::string text = code == ZIP_ER_NOZIP ? "it is no ZIP file, or cut short" : zip_error_strerror(&why);
+    const std::string text = code == ZIP_ER_NOZIP    ? "it is no ZIP file, or cut short"
+                             : code == ZIP_ER_EXISTS ? "two of its entries have one name"
+                                                     : zip_error_strerror(&why);
     zip_error_fini(&why);
     return unreadable(text);
   }

@@ -28,7 +28,10 @@ struct OpenedDocument {
 
 [[nodiscard]] std::optional<OpenedDocument> open_document(const std::filesystem::path& file, const RunOptions& run,
                                                           DiagnosticSink& sink);
-/// The same, validated.
+/// A file of the file system, or of a package: "beam.mesoz/stress.h5". Reads the package.
+[[nodiscard]] std::optional<Resource> open_resource(const std::filesystem::path& file, const RunOptions& run,
+                                                    DiagnosticSink& sink);
+/// The same as open_document, validated.
 [[nodiscard]] std::optional<CheckedDocument> open_checked_document(const std::filesystem::path& file,
                                                                    const RunOptions& run, DiagnosticSink& sink);
 
