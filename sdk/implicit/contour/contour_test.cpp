@@ -297,6 +297,25 @@ TEST(Contour, StopsWithinHalfASecondAlsoWhereValuesAreDear) {
   }
 }
 
+TEST(Contour, TakesExactSamplesAtEdgeEndsAndAsksForTheOthers) {
+  std::size_t asked = 0;
+  std::vector<std::string> meshes;
+  for (const double exact_within : {0.0, 0.01, HUGE_VAL}) {
+    const FunctionSource source(cube(60), gyroid, true, exact_within);
+    const TriangleMesh mesh = contour_of(source, {}, {.jobs = 1}).mesh;
+    std::string bytes;
+    for (const Vec3& p : mesh.points) bytes.append(reinterpret_cast<const char*>(&p), sizeof p);
+    meshes.push_back(bytes);
+    EXPECT_EQ(source.asked() == 0, exact_within == HUGE_VAL);
+    if (exact_within == 0.01) {
+      EXPECT_LT(source.asked(), asked);
+    }
+    asked = source.asked();
+  }
+  EXPECT_EQ(meshes[0], meshes[1]);
+  EXPECT_EQ(meshes[0], meshes[2]);
+}
+
 TEST(Contour, StopsAtTheDeadline) {
   TriangleMesh mesh;
   MemoryMeshSink sink(mesh);

@@ -22,9 +22,11 @@ float with_sign(float value, bool negative) {
 
 }  // namespace
 
-EdgeEndSampler::EdgeEndSampler(const Grid& grid, std::unique_ptr<GridSampler> signs, std::function<bool()> go_on)
+EdgeEndSampler::EdgeEndSampler(const Grid& grid, std::unique_ptr<GridSampler> signs, double exact_within,
+                               std::function<bool()> go_on)
     : grid_(grid),
       source_(std::move(signs)),
+      exact_within_(static_cast<float>(exact_within)),
       go_on_(std::move(go_on)),
       rows_(static_cast<std::size_t>(grid.nodes[1])),
       words_((static_cast<std::size_t>(grid.nodes[0]) + 511) / 512 * 8),
@@ -37,9 +39,15 @@ void EdgeEndSampler::begin_slab(std::int32_t first, std::int32_t last) {
   const std::size_t rows = static_cast<std::size_t>(last - first) * rows_;
   signs_.assign(rows * words_, 0);
   ends_.assign(rows * words_, 0);
+  exact_.clear();
+  exact_values_.clear();
+  first_exact_.clear();
   for (std::int32_t k = first; k < last; ++k)
-    for (std::int32_t j = 0; j < grid_.nodes[1] && go_on_(); ++j) source_->row(j, k, row_values_.data(), at(j, k));
-  values_.clear();
+    for (std::int32_t j = 0; j < grid_.nodes[1] && go_on_(); ++j) {
+      source_->row(j, k, row_values_.data(), at(j, k));
+      if (exact_within_ > 0) keep_exact();
+    }
+  if (!go_on_()) exact_.clear();
   first_value_.clear();
   std::size_t ends = 0;
   for (std::int32_t k = first; k < last; ++k)
@@ -47,16 +55,42 @@ void EdgeEndSampler::begin_slab(std::int32_t first, std::int32_t last) {
       first_value_.push_back(ends);
       ends += mark_ends(j, k);
     }
-  values_.reserve(ends);
+  values_.resize(ends);
   for (std::int32_t k = first; k < last; ++k)
     for (std::int32_t j = 0; j < grid_.nodes[1]; ++j) take_values(j, k);
   flush();
 }
 
+/// Of the row that was just sampled. Where a sampler left a value as it was no edge ends.
+void EdgeEndSampler::keep_exact() {
+  first_exact_.push_back(exact_values_.size());
+  for (std::size_t w = 0; w < words_; ++w) {
+    const float* const values = row_values_.data() + 64 * w;
+    std::uint64_t near = 0;
+    for (std::size_t i = 0; i < 64; ++i) near |= std::uint64_t{std::abs(values[i]) <= exact_within_} << i;
+    exact_.push_back(near);
+    for_each_bit(near, 0, [&](std::size_t i) { exact_values_.push_back(values[i]); });
+  }
+}
+
+/// Takes what is known, and puts the other ends on the list.
 void EdgeEndSampler::take_values(std::int32_t j, std::int32_t k) {
-  const std::uint64_t* const ends = ends_.data() + (at(j, k) - signs_.data());
-  for (std::size_t w = 0; w < words_; ++w)
-    for_each_bit(ends[w], w, [&](std::size_t i) { points_.push_back(grid_.node(static_cast<std::int32_t>(i), j, k)); });
+  const std::size_t row = row_of(j, k);
+  std::size_t place = first_value_[row], known = exact_.empty() ? 0 : first_exact_[row];
+  for (std::size_t w = 0; w < words_; ++w) {
+    const std::uint64_t exact = exact_.empty() ? 0 : exact_[row * words_ + w];
+    for_each_bit(ends_[row * words_ + w], w, [&](std::size_t i) {
+      const std::uint64_t bit = std::uint64_t{1} << i % 64;
+      if ((exact & bit) != 0) {
+        values_[place] = exact_values_[known + static_cast<std::size_t>(std::popcount(exact & (bit - 1)))];
+      } else {
+        points_.push_back(grid_.node(static_cast<std::int32_t>(i), j, k));
+        places_.push_back(place);
+      }
+      ++place;
+    });
+    known += static_cast<std::size_t>(std::popcount(exact));
+  }
   if (points_.size() >= batch) flush();
 }
 
@@ -66,13 +100,15 @@ void EdgeEndSampler::flush() {
     const std::size_t count = std::min(batch, points_.size() - i);
     source_->values_at(std::span(points_).subspan(i, count), computed_.data() + i);
   }
-  for (const double v : computed_) values_.push_back(static_cast<float>(v));
+  for (std::size_t i = 0; i < computed_.size(); ++i) values_[places_[i]] = static_cast<float>(computed_[i]);
   points_.clear();
+  places_.clear();
 }
 
 std::uint64_t EdgeEndSampler::bytes() const {
-  return (signs_.capacity() + ends_.capacity()) * sizeof(std::uint64_t) + values_.capacity() * sizeof(float) +
-         first_value_.capacity() * sizeof(std::size_t);
+  return (signs_.capacity() + ends_.capacity() + exact_.capacity()) * sizeof(std::uint64_t) +
+         (values_.capacity() + exact_values_.capacity()) * sizeof(float) +
+         (first_value_.capacity() + first_exact_.capacity()) * sizeof(std::size_t);
 }
 
 std::size_t EdgeEndSampler::mark_ends(std::int32_t j, std::int32_t k) {

@@ -2,6 +2,8 @@
 #pragma once
 // A field given by any function, for tests.
 
+#include <atomic>
+#include <cmath>
 #include <functional>
 #include <memory>
 
@@ -13,11 +15,14 @@ class FunctionSource final : public GridSource {
  public:
   using Function = std::function<double(Vec3)>;
 
-  FunctionSource(Grid grid, Function f, bool signs_only = false)
-      : grid_(grid), f_(std::move(f)), signs_only_(signs_only) {}
+  FunctionSource(Grid grid, Function f, bool signs_only = false, double exact_within = 0)
+      : grid_(grid), f_(std::move(f)), signs_only_(signs_only), exact_within_(exact_within) {}
 
   [[nodiscard]] const Grid& grid() const override { return grid_; }
   [[nodiscard]] bool signs_only() const override { return signs_only_; }
+  [[nodiscard]] double exact_within() const override { return exact_within_; }
+  /// How many single points were asked for.
+  [[nodiscard]] std::size_t asked() const { return asked_; }
   [[nodiscard]] std::unique_ptr<GridSampler> sampler() const override { return std::make_unique<Sampler>(*this); }
 
  private:
@@ -30,11 +35,13 @@ class FunctionSource final : public GridSource {
       for (std::int32_t w = 0; w <= (n - 1) / 64; ++w) inside[w] = 0;
       for (std::int32_t i = 0; i < n; ++i) {
         const double v = source_.f_(source_.grid_.node(i, j, k));
-        values[i] = source_.signs_only_ ? 1.0F : static_cast<float>(v);
+        const bool exact = !source_.signs_only_ || std::abs(v) <= source_.exact_within_;
+        values[i] = exact ? static_cast<float>(v) : 1e9F;
         if (v < 0) inside[i / 64] |= std::uint64_t{1} << i % 64;
       }
     }
     void values_at(std::span<const Vec3> points, double* out) override {
+      source_.asked_ += points.size();
       for (const Vec3& p : points) *out++ = source_.f_(p);
     }
 
@@ -45,6 +52,8 @@ class FunctionSource final : public GridSource {
   Grid grid_;
   Function f_;
   bool signs_only_;
+  double exact_within_;
+  mutable std::atomic<std::size_t> asked_ = 0;
 };
 
 }  // namespace meso::implicit

@@ -50,7 +50,8 @@ VertexPass::VertexPass(const Layout& layout, const GridSource& source, const Mes
       z_(layout.nx + 1),
       points_(chunk + 4 * (layout.nx + 1)) {
   if (!signs_only_) return;
-  auto edge_ends = std::make_unique<EdgeEndSampler>(source.grid(), std::move(sampler_), std::move(go_on));
+  auto edge_ends =
+      std::make_unique<EdgeEndSampler>(source.grid(), std::move(sampler_), source.exact_within(), std::move(go_on));
   edge_ends_ = edge_ends.get();
   sampler_ = std::move(edge_ends);
 }

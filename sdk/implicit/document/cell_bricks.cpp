@@ -234,6 +234,7 @@ class PreparedBricks final : public ExternalField::Prepared {
  public:
   explicit PreparedBricks(std::shared_ptr<const Shared> shared) : shared_(std::move(shared)) {}
   [[nodiscard]] std::unique_ptr<ExternalRows> make_rows() const override { return std::make_unique<Rows>(shared_); }
+  [[nodiscard]] double exact_within() const override { return shared_->is_exact ? HUGE_VAL : shared_->margin; }
 
  private:
   std::shared_ptr<const Shared> shared_;

@@ -25,6 +25,12 @@ double Band::for_root(double t) const {
   return band;
 }
 
+double Band::root_for(double magnitude) const {
+  double root = HUGE_VAL;
+  for (const Line& line : lines_) root = std::min(root, (magnitude - line.offset) / line.slope);
+  return std::max(root * (1 - 1e-6), 0.0);  // rounded down: a sample is a float
+}
+
 void Band::add(Line line) {
   const auto covers = [](const Line& a, const Line& b) { return a.slope >= b.slope && a.offset >= b.offset; };
   if (std::any_of(lines_.begin(), lines_.end(), [&](const Line& l) { return covers(l, line); })) return;

@@ -19,6 +19,8 @@ class Band {
   /// Whatever is beyond may be replaced by anything of its sign that is beyond as well: then a root up to t is still
   /// the same, and one beyond stays beyond, with its sign. Infinity: the value matters everywhere. t >= 0.
   [[nodiscard]] double for_root(double t) const;
+  /// The other way round: up to which magnitude the root is exact if the external is up to `magnitude`. At least 0.
+  [[nodiscard]] double root_for(double magnitude) const;
   [[nodiscard]] bool is_finite() const { return !everywhere_; }
   /// Where both are false the external is not read. Both: the root may go either way.
   [[nodiscard]] bool may_rise() const { return rises_; }

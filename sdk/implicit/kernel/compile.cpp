@@ -34,9 +34,11 @@ class Source final : public GridSource {
     for (std::size_t k = 0; k < bands.size(); ++k) {
       const ExternalLeaf& leaf = plan_.graph().externals()[k];
       const double band = bands[k].for_root(0);
-      signs_only_ = signs_only_ || std::isfinite(band);
       externals_.push_back(leaf.field->prepare(grid(), leaf.field_from_world, band, run));
       if (!externals_.back()) return false;
+      if (!std::isfinite(band)) continue;
+      signs_only_ = true;
+      exact_within_ = std::min(exact_within_, bands[k].root_for(std::max(band, externals_.back()->exact_within())));
     }
     return true;
   }
@@ -44,6 +46,7 @@ class Source final : public GridSource {
   [[nodiscard]] const Grid& grid() const override { return plan_.grid(); }
   [[nodiscard]] std::unique_ptr<GridSampler> sampler() const override;
   [[nodiscard]] bool signs_only() const override { return signs_only_; }
+  [[nodiscard]] double exact_within() const override { return exact_within_; }
 
   [[nodiscard]] std::uint64_t bytes() const override { return external_bytes_ + plan_.table_bytes(); }
   void count_externals(std::uint64_t bytes) { external_bytes_ = bytes; }
@@ -78,6 +81,7 @@ class Source final : public GridSource {
   std::vector<Band> bands_;
   std::vector<std::unique_ptr<ExternalField::Prepared>> externals_;
   bool prunes_, signs_only_ = false;
+  double exact_within_ = HUGE_VAL;
   std::uint64_t external_bytes_ = 0;
 };
 

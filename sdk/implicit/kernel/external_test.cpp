@@ -12,6 +12,7 @@ namespace {
 class Ball final : public ExternalField {
  public:
   mutable double asked_band = -1;
+  double exact_within = 0;  ///< of rows, whatever is asked
 
   [[nodiscard]] double value(Vec3 p) const override { return norm(p) - 1; }
   [[nodiscard]] Interval interval(const Box3& box) const override {
@@ -33,8 +34,9 @@ class Ball final : public ExternalField {
   class PreparedBall final : public Prepared {
    public:
     PreparedBall(const Ball& ball, const Grid& grid, const Affine& map, double band)
-        : ball_(ball), grid_(grid), map_(map), band_(band) {}
+        : ball_(ball), grid_(grid), map_(map), band_(std::max(band, ball.exact_within)) {}
     [[nodiscard]] std::unique_ptr<ExternalRows> make_rows() const override { return std::make_unique<Rows>(*this); }
+    [[nodiscard]] double exact_within() const override { return ball_.exact_within; }
 
    private:
     class Rows final : public ExternalRows {
@@ -111,6 +113,35 @@ TEST(External, IsAskedForEverythingWhereItsValueCounts) {
     expect_right_signs(term, false);
     EXPECT_EQ(ball->asked_band, HUGE_VAL);
   }
+}
+
+TEST(External, SaysHowFarItsRowsAreExact) {
+  const auto ball = std::make_shared<Ball>();
+  const Term b = Term::external(ball), x = Term::coordinate(0);
+  EXPECT_EQ(compile(b, grid, {})->exact_within(), 0);
+  EXPECT_EQ(compile(b - 0.25, grid, {})->exact_within(), 0);
+  ball->exact_within = 0.5;
+  const auto expect_exact = [&](const Term& term, double within) {
+    const FlatTerm truth(term);
+    const auto source = compile(term, grid, {.pruning = Pruning::off});
+    ASSERT_NEAR(source->exact_within(), within, 2e-6 * within);
+    const Samples samples(*source, 8);
+    std::size_t near = 0;
+    for (std::int32_t k = 0; k < 41; ++k)
+      for (std::int32_t j = 0; j < 45; ++j)
+        for (std::int32_t i = 0; i < 90; ++i) {
+          const auto value = static_cast<float>(truth.value(grid.node(i, j, k)));
+          const bool is_near = std::abs(samples.value(i, j, k)) <= source->exact_within();
+          ASSERT_TRUE(is_near || std::abs(value) > 0.99 * within);
+          ASSERT_TRUE(!is_near || std::abs(samples.value(i, j, k) - value) < 1e-6F);
+          near += is_near ? 1 : 0;
+        }
+    EXPECT_GT(near, 1000U);
+  };
+  expect_exact(b, 0.5);
+  expect_exact(b - 0.25, 0.25);
+  expect_exact(2 * max(b, x) - 0.5, 0.5);
+  expect_exact(max(b, -min(x, b - 0.1)), 0.4);
 }
 
 TEST(External, StandsWhereItsMapPutsIt) {

@@ -53,6 +53,8 @@ class GridSource {
   /// True: a row's values are good for their sign only, and contouring must ask values_at() for both ends of every
   /// edge it crosses. For fields whose values are dear and whose signs are cheap (distance to a mesh).
   [[nodiscard]] virtual bool signs_only() const { return false; }
+  /// If so: samples of magnitudes up to this are exact all the same, and need not be asked for again.
+  [[nodiscard]] virtual double exact_within() const { return 0; }
 
   /// Memory that it holds: counts against a run's budget.
   [[nodiscard]] virtual std::uint64_t bytes() const { return 0; }

@@ -50,6 +50,9 @@ class ExternalField {
     Prepared& operator=(const Prepared&) = delete;
     virtual ~Prepared() = default;
     [[nodiscard]] virtual std::unique_ptr<ExternalRows> make_rows() const = 0;
+    /// Up to which magnitude values of rows are exact, where that is more than the band that was asked for: for fields
+    /// whose values beside the surface cost no more than their signs.
+    [[nodiscard]] virtual double exact_within() const { return 0; }
   };
   [[nodiscard]] virtual std::unique_ptr<Prepared> prepare(const Grid& grid, const Affine& field_from_grid, double band,
                                                           const RunOptions& run) const = 0;
