@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "hdf5_handle.hpp"
+#include "meso/hdf5/handle.hpp"
 
 namespace meso {
 namespace {
@@ -11,6 +11,8 @@ namespace {
 using hdf5::Handle;
 
 constexpr hsize_t block_values = hsize_t{1} << 22;  // 32 MiB between two looks at the clock
+constexpr hsize_t most_columns = 10'000;
+constexpr std::size_t most_text_bytes = std::size_t{1} << 16;  // of an attribute
 
 struct DataSet {
   std::string name;
@@ -19,13 +21,17 @@ struct DataSet {
   std::vector<std::string> components, units;
 };
 
+/// Empty where there is no such attribute of texts, or a larger one than names of columns are.
 std::vector<std::string> texts_of(hid_t object, const char* attribute) {
   if (H5Aexists(object, attribute) <= 0) return {};
   const Handle a(H5Aopen(object, attribute, H5P_DEFAULT), H5Aclose);
   if (!a) return {};
   const Handle space(H5Aget_space(a.id()), H5Sclose), type(H5Aget_type(a.id()), H5Tclose);
   const hssize_t count = H5Sget_simple_extent_npoints(space.id());
-  if (count < 1 || H5Tget_class(type.id()) != H5T_STRING) return {};
+  const std::size_t size = H5Tget_size(type.id());
+  if (count < 1 || H5Tget_class(type.id()) != H5T_STRING || size == 0 ||
+      static_cast<std::size_t>(count) > most_text_bytes / size)
+    return {};
   std::vector<std::string> result;
   if (H5Tis_variable_str(type.id()) > 0) {
     const Handle memory(H5Tcopy(type.id()), H5Tclose);
@@ -35,7 +41,6 @@ std::vector<std::string> texts_of(hid_t object, const char* attribute) {
     H5Dvlen_reclaim(memory.id(), space.id(), H5P_DEFAULT, texts.data());
     return result;
   }
-  const std::size_t size = H5Tget_size(type.id());
   std::string bytes(size * static_cast<std::size_t>(count), '\0');
   if (H5Aread(a.id(), type.id(), bytes.data()) < 0) return {};
   for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
@@ -45,6 +50,33 @@ std::vector<std::string> texts_of(hid_t object, const char* attribute) {
     result.push_back(std::move(text));
   }
   return result;
+}
+
+/// How a path is followed: to other files never; `was_asked` becomes true where a file asks for it.
+Handle links_in_this_file(bool& was_asked) {
+  Handle list(H5Pcreate(H5P_LINK_ACCESS), H5Pclose);
+  H5Pset_elink_cb(
+      list.id(),
+      [](const char*, const char*, const char*, const char*, unsigned*, hid_t, void* asked) -> herr_t {
+        *static_cast<bool*>(asked) = true;
+        return -1;
+      },
+      &was_asked);
+  return list;
+}
+
+/// Why the numbers of a data set are not all in this file, or of a kind that is not read; empty if they are.
+std::string why_not_read(hid_t set, hid_t type, hid_t space) {
+  const H5T_class_t kind = H5Tget_class(type);
+  const int dimensions = H5Sget_simple_extent_ndims(space);
+  if (kind != H5T_FLOAT && kind != H5T_INTEGER) return "of something else than numbers";
+  if (dimensions < 1 || dimensions > 2) return "of " + std::to_string(dimensions) + " dimensions";
+  const Handle list(H5Dget_create_plist(set), H5Pclose);
+  if (!list || H5Pget_layout(list.id()) == H5D_VIRTUAL || H5Pget_external_count(list.id()) != 0)
+    return "whose numbers are in other files";
+  hsize_t size[2]{0, 1};
+  H5Sget_simple_extent_dims(space, size, nullptr);
+  return size[1] > most_columns ? "of " + std::to_string(size[1]) + " columns" : "";
 }
 
 /// A file by its name; bytes in memory as the image of one, which the library copies.
@@ -144,17 +176,24 @@ class Hdf5Reader {
     report(Code::field_file_empty, {"data set '" + paths + "'"});
     return false;
   }
-  bool open(const std::string& path) {
-    const Handle object(H5Oopen(file_.id(), path.empty() ? "/" : path.c_str(), H5P_DEFAULT), H5Oclose);
-    if (!object) {
+  Handle object(const std::string& path) {
+    return {H5Oopen(file_.id(), path.empty() ? "/" : path.c_str(), links_.id()), H5Oclose};
+  }
+  bool no_object(const std::string& path) {
+    if (leads_out_)
+      report(Code::field_file_unsupported, {"the link '" + path + "' to another file"});
+    else
       report(Code::field_file_empty, {"data set '" + path + "'"});
-      return false;
-    }
-    if (H5Iget_type(object.id()) == H5I_DATASET) return add(path);
+    return false;
+  }
+  bool open(const std::string& path) {
+    Handle found = object(path);
+    if (!found) return no_object(path);
+    if (H5Iget_type(found.id()) == H5I_DATASET) return add(path, std::move(found));
     is_group_ = true;
     std::vector<std::string> names;
     H5Literate(
-        object.id(), H5_INDEX_NAME, H5_ITER_INC, nullptr,
+        found.id(), H5_INDEX_NAME, H5_ITER_INC, nullptr,
         [](hid_t, const char* name, const H5L_info_t*, void* all) -> herr_t {
           static_cast<std::vector<std::string>*>(all)->emplace_back(name);
           return 0;
@@ -162,22 +201,17 @@ class Hdf5Reader {
         &names);
     for (const std::string& name : names) {
       const std::string inner = (path == "/" || path.empty() ? "" : path) + "/" + name;
-      const Handle one(H5Oopen(file_.id(), inner.c_str(), H5P_DEFAULT), H5Oclose);
-      if (one && H5Iget_type(one.id()) == H5I_DATASET && !add(inner)) return false;
+      Handle one = object(inner);
+      if (leads_out_) return no_object(inner);
+      if (one && H5Iget_type(one.id()) == H5I_DATASET && !add(inner, std::move(one))) return false;
     }
     return true;
   }
-  bool add(const std::string& path) {
-    Handle set(H5Dopen2(file_.id(), path.c_str(), H5P_DEFAULT), H5Dclose);
+  bool add(const std::string& path, Handle set) {
     Handle type(H5Dget_type(set.id()), H5Tclose);
     const Handle space(H5Dget_space(set.id()), H5Sclose);
-    const H5T_class_t kind = H5Tget_class(type.id());
-    const int dimensions = H5Sget_simple_extent_ndims(space.id());
-    if ((kind != H5T_FLOAT && kind != H5T_INTEGER) || dimensions < 1 || dimensions > 2) {
-      report(Code::field_file_unsupported,
-             {"the data set '" + path + "' of " +
-              (kind == H5T_FLOAT || kind == H5T_INTEGER ? std::to_string(dimensions) + " dimensions"
-                                                        : std::string("something else than numbers"))});
+    if (const std::string why = why_not_read(set.id(), type.id(), space.id()); !why.empty()) {
+      report(Code::field_file_unsupported, {"the data set '" + path + "' " + why});
       return false;
     }
     hsize_t size[2]{0, 1};
@@ -245,7 +279,7 @@ class Hdf5Reader {
     const Handle list(H5Dget_create_plist(set.set.id()), H5Pclose);
     const hsize_t rows = block_values / std::max<hsize_t>(1, set.columns);
     hsize_t chunk[2]{1, 1};
-    if (H5Pget_layout(list.id()) != H5D_CHUNKED || H5Pget_chunk(list.id(), 2, chunk) < 1) return rows;
+    if (H5Pget_layout(list.id()) != H5D_CHUNKED || H5Pget_chunk(list.id(), 2, chunk) < 1 || chunk[0] == 0) return rows;
     return (rows + chunk[0] - 1) / chunk[0] * chunk[0];
   }
 
@@ -254,6 +288,8 @@ class Hdf5Reader {
   const RunOptions& run_;
   DiagnosticSink& sink_;
   Handle file_;
+  bool leads_out_ = false;
+  Handle links_ = links_in_this_file(leads_out_);
   std::vector<DataSet> sets_;
   bool is_group_ = false;
 };

@@ -74,6 +74,23 @@ TEST(Hdf5Names, OurFilesComeBack) {
   EXPECT_EQ(bytes_of(file), first);
 }
 
+TEST(Hdf5InMemory, IsTheSameFile) {
+  const std::string name = fixture("layouts.h5");
+  const Resource memory("a.mesoz/layouts.h5", std::make_shared<const std::string>(bytes_of(name)));
+  DiagnosticSink sink;
+  for (const char* path : {"/contiguous", "/chunked", "/big", "/named"}) {
+    const auto file = read_field_hdf5(name, path, {}, sink), image = read_field_hdf5(memory, path, {}, sink);
+    ASSERT_TRUE(file && image) << path;
+    ASSERT_EQ(image->records.rows(), file->records.rows());
+    for (std::size_t r = 0; r < file->records.rows(); ++r)
+      for (std::size_t c = 0; c < file->records.columns(); ++c) EXPECT_EQ(image->records(r, c), file->records(r, c));
+  }
+  EXPECT_TRUE(read_field_hdf5_integers(memory, "/cells", {}, sink));
+  const Resource cut("a.mesoz/cut.h5", std::make_shared<const std::string>(bytes_of(name).substr(0, 2000)));
+  EXPECT_FALSE(read_field_hdf5(cut, "/chunked", {}, sink));
+  EXPECT_THAT(render(sink.diagnostics().at(0)), testing::HasSubstr("damaged or cut short"));
+}
+
 TEST(Hdf5Faults, AreReportedOnce) {
   EXPECT_THAT(fault_of("/nowhere.h5", "/a"), testing::HasSubstr("IMPORT_UNREADABLE"));
   EXPECT_THAT(fault_of(fixture("layouts.h5"), "/nothing"), testing::HasSubstr("no data set '/nothing'"));
@@ -89,6 +106,41 @@ TEST(Hdf5Faults, AreReportedOnce) {
   EXPECT_THAT(fault_of(cut, "/chunked"), testing::HasSubstr("damaged or cut short"));
   std::ofstream(cut, std::ios::binary) << "x,y\n1,2\n";
   EXPECT_THAT(fault_of(cut, "/chunked"), testing::HasSubstr("no HDF5 file"));
+}
+
+// elsewhere.h5: nothing that a file says makes a reader open another one, or hold more than it was allowed.
+TEST(Hdf5Faults, OtherFilesAreNotRead) {
+  const std::string file = fixture("elsewhere.h5");
+  EXPECT_THAT(fault_of(file, "/external_link"), testing::HasSubstr("the link '/external_link' to another file is not"));
+  EXPECT_THAT(fault_of(file, "/soft_link_out"), testing::HasSubstr("the link '/soft_link_out' to another file is not"));
+  EXPECT_THAT(fault_of(file, "/"), testing::HasSubstr("to another file is not supported"));
+  EXPECT_THAT(fault_of(file, "/virtual"), testing::HasSubstr("'/virtual' whose numbers are in other files"));
+  EXPECT_THAT(fault_of(file, "/external_storage"), testing::HasSubstr("whose numbers are in other files"));
+  EXPECT_THAT(fault_of(file, "/circle"), testing::HasSubstr("no data set '/circle'"));
+  DiagnosticSink sink;
+  EXPECT_TRUE(read_field_hdf5(file, "/soft_link", {}, sink)) << "a link inside the file is one of its names";
+}
+
+TEST(Hdf5Faults, SizesAreLimited) {
+  const std::string file = fixture("elsewhere.h5");
+  EXPECT_THAT(fault_of(file, "/wide"), testing::HasSubstr("of 20000 columns is not supported"));
+  EXPECT_THAT(fault_of(file, "/huge"), testing::HasSubstr("LIMIT_MEMORY"));  // 2^34 rows in a file of some kilobytes
+  DiagnosticSink sink;
+  const auto table = read_field_hdf5(file, "/long_names", {}, sink);
+  ASSERT_TRUE(table);
+  EXPECT_TRUE(table->columns.empty());
+}
+
+TEST(Hdf5Faults, TheLibraryPrintsNothing) {
+  testing::internal::CaptureStderr();
+  const std::string damaged = testing::TempDir() + "damaged.h5";
+  std::string bytes = bytes_of(fixture("layouts.h5"));
+  std::fill(bytes.begin() + 60, bytes.begin() + 2000, '\x7F');
+  std::ofstream(damaged, std::ios::binary) << bytes;
+  DiagnosticSink sink;
+  EXPECT_FALSE(read_field_hdf5(damaged, "/chunked", {}, sink));
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+  EXPECT_EQ(sink.diagnostics().size(), 1U);
 }
 
 }  // namespace

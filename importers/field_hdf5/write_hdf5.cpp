@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 
-#include "hdf5_handle.hpp"
+#include "meso/hdf5/handle.hpp"
 #include "meso/import_field_hdf5/read_hdf5.hpp"
 
 namespace meso {

@@ -1,6 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// An HDF5 identifier that closes itself. Private.
+// HDF5 identifiers that close themselves, and the lock that every use of the library needs.
+//
+//   const hdf5::Session session;   // first, and for as long as anything of the library is in use
+//   const hdf5::Handle file(H5Fopen(name, H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
+//   if (!file) ...
+//
+// Thread rule: one Session at a time; a second one waits.
 
 #include <hdf5.h>
 
@@ -26,10 +32,14 @@ class Handle {
   Close close_;
 };
 
-/// The library has one set of global tables and no lock of its own; it would also print errors that are ours to report.
+/// The library has one set of global tables and no lock of its own; it would also print errors that are ours to report,
+/// and load code from folders that the environment names.
 class Session {
  public:
-  Session() : lock_(mutex()) { H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); }
+  Session() : lock_(mutex()) {
+    H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+    H5PLset_loading_state(0);
+  }
 
  private:
   static std::mutex& mutex() {
