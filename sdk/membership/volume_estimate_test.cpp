@@ -36,6 +36,19 @@ TEST(VolumeEstimate, DoesNotDependOnJobs) {
   EXPECT_EQ(answers_at(ball(), points, {.jobs = 1}), answers_at(ball(), points, {.jobs = 3}));
 }
 
+TEST(VolumeEstimate, IsTheSameWithoutKeptAnswers) {
+  const JitteredPoints points({{-1, -1, -1}, {1.5, 1, 1}}, 100'000, 5);
+  const auto answers = answers_at(ball(), points, {});
+  ASSERT_TRUE(answers);
+  const VolumeEstimate kept = estimate_volume(points, *answers);
+  for (const unsigned jobs : {1u, 3u}) {
+    const auto found = estimate_volume(ball(), points, {.jobs = jobs});
+    ASSERT_TRUE(found);
+    EXPECT_EQ(found->low, kept.low);
+    EXPECT_EQ(found->deviation, kept.deviation);
+  }
+}
+
 TEST(VolumeEstimate, PointsStandInTheirOwnCells) {
   const JitteredPoints points({{0, 0, 0}, {8, 4, 2}}, 64, 3);
   ASSERT_EQ(points.size(), 64u);
@@ -51,6 +64,7 @@ TEST(VolumeEstimate, AStopIsObeyed) {
   RunOptions run;
   run.cancelled = [] { return true; };
   EXPECT_FALSE(answers_at(ball(), points, run));
+  EXPECT_FALSE(estimate_volume(ball(), points, run));
 }
 
 }  // namespace

@@ -44,5 +44,8 @@ struct VolumeEstimate {
   double deviation = 0;      ///< one standard deviation of either, at least one cell of the grid
 };
 [[nodiscard]] VolumeEstimate estimate_volume(const JitteredPoints& points, const std::vector<Answer>& answers);
+/// The same without keeping the answers, so for any number of points. Empty if the run was stopped; reports nothing.
+[[nodiscard]] std::optional<VolumeEstimate> estimate_volume(const Membership& part, const JitteredPoints& points,
+                                                            const RunOptions& run);
 
 }  // namespace meso::membership
