@@ -22,12 +22,14 @@ double seconds_since(Clock::time_point start) { return std::chrono::duration<dou
 /// A body while the fold goes on: solids, or, after the last step, the repeated template of a lattice.
 struct Folded {
   Solids solids;
+  double pieces_volume = 0;  ///< of what they were put together from; 0: not known
   std::optional<Body> body;
 };
 
 void keep_largest(Body& body) {
   const auto volume = [](const Solid& solid) { return measure(Body{.solids = {solid}, .fragments = 0}).volume; };
   body.solids = {*std::ranges::max_element(body.solids, {}, volume)};
+  body.pieces_volume = 0;
 }
 
 class PartFold {
@@ -77,7 +79,10 @@ class PartFold {
     if (!made) return false;
     state.solids = std::move(made->solids);
     way = made->used_booleans ? "boolean" : "cells";
-    return settle_fragments(state.solids, before, context, part.id.text, counts);
+    const std::size_t solids = state.solids.size();
+    if (!settle_fragments(state.solids, before, context, part.id.text, counts)) return false;
+    state.pieces_volume = state.solids.size() == solids ? made->pieces_volume : 0;
+    return true;
   }
 
   bool try_lattice(Folded& state, const eval::CellStream& cells, const FoldContext& context, const std::string& part) {
@@ -124,6 +129,7 @@ class PartFold {
 };
 
 void place(Body& body, const Affine& world_from_part) {
+  body.pieces_volume *= determinant(world_from_part.linear);
   for (Solid& solid : body.solids) {
     solid.outer.placement = world_from_part * solid.outer.placement;
     for (Shell& hollow : solid.voids) hollow.placement = world_from_part * hollow.placement;
@@ -131,6 +137,8 @@ void place(Body& body, const Affine& world_from_part) {
 }
 
 void append(Realisation& to, Realisation from) {
+  const bool is_known = from.body.pieces_volume > 0 && (to.body.solids.empty() || to.body.pieces_volume > 0);
+  to.body.pieces_volume = is_known ? to.body.pieces_volume + from.body.pieces_volume : 0;
   std::ranges::move(from.body.solids, std::back_inserter(to.body.solids));
   to.body.fragments += from.body.fragments;
   to.cells.placed += from.cells.placed;
@@ -204,6 +212,7 @@ std::optional<Realisation> realise(const eval::Evaluation& evaluation, const Par
     Realisation result{{}, fold.counts, std::move(fold.way)};
     auto body = folded->body ? std::move(folded->body) : to_body(folded->solids, options, sink);
     if (!body) return {};
+    if (!folded->body) body->pieces_volume = folded->pieces_volume;
     result.body = std::move(*body);
     result.body.fragments = result.cells.fragments;
     result.realise_seconds = seconds_since(start);

@@ -145,10 +145,21 @@ class CellStep {
     return true;
   }
 
+  /// Each prototype integrated once.
+  [[nodiscard]] double volume_of_cells(const std::vector<std::size_t>& which) const {
+    std::vector<std::size_t> uses(cells_.prototypes.size(), 0);
+    for (const std::size_t i : which) ++uses[cells_.cells[i].prototype];
+    double volume = 0;
+    for (std::size_t p = 0; p < uses.size(); ++p)
+      if (uses[p] > 0) volume += static_cast<double>(uses[p]) * volume_of(cells_.prototypes[p].solids);
+    return volume;
+  }
+
   static void append(Solids& to, const Solids& from) { to.insert(to.end(), from.begin(), from.end()); }
 
   std::optional<FoldStep> difference() {
     FoldStep step{body_, !joined_.empty() || !enclosed_.empty()};
+    if (!step.used_booleans && drilled_.empty()) step.pieces_volume = volume_of(body_) - volume_of_cells(apart_inside_);
     if (!joined_.empty()) {
       auto cut_body = cut(body_, joined_, context_.where(), context_.solid);
       if (!cut_body) return {};
@@ -233,7 +244,10 @@ class CellStep {
   std::optional<FoldStep> intersection() {
     FoldStep step{{}, !joined_.empty()};
     for (const std::size_t i : apart_inside_) append(step.solids, cells_.solids_of(cells_.cells[i]));
-    if (joined_.empty()) return step;
+    if (joined_.empty()) {
+      step.pieces_volume = volume_of_cells(apart_inside_);
+      return step;
+    }
     const auto joined = fuse(joined_, context_.where(), context_.solid);
     if (!joined) return {};
     const auto clipped = common(*joined, body_, context_.where(), context_.solid);

@@ -12,6 +12,7 @@ namespace meso::brep {
 struct FoldStep {
   Solids solids;
   bool used_booleans = false;
+  double pieces_volume = 0;  ///< of what the solids were put together from; 0: not known
 };
 
 /// What a step needs besides its operands.

@@ -402,6 +402,7 @@ std::optional<Body> assemble(Quotient quotient, KeptCells cells, CellKinds kinds
   if (!voids.empty() || std::fabs(volume - expected) > 1e-6 * expected + unknown)
     return fault("the shells do not enclose what the cells hold");
   body.fragments = body.solids.empty() ? 0 : body.solids.size() - 1;
+  body.pieces_volume = expected;
   return body;
 }
 

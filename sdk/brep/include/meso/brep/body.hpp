@@ -168,6 +168,9 @@ struct Solid {
 struct Body {
   std::vector<Solid> solids;
   std::size_t fragments = 0;  ///< solids beyond the largest that a cut has left loose
+  /// What the pieces hold that the body was put together from, each integrated on its own before that: cells, or a body
+  /// and its voids. The shells must enclose as much. 0: not known.
+  double pieces_volume = 0;
 };
 
 }  // namespace meso::brep
