@@ -31,6 +31,8 @@ const KnownUnit* find_unit(std::string_view text) {
   return found == std::end(units) ? nullptr : found;
 }
 
+constexpr std::uint64_t bytes_per_place = 64;  // a place, and the search tree that holds it
+
 bool has_points(ValueFormat format) {
   return format == ValueFormat::vtk || format == ValueFormat::vtu || format == ValueFormat::frd ||
          format == ValueFormat::msh;
@@ -342,7 +344,7 @@ bool FieldLoader::prepare(FieldSource& source) {
   std::vector<Vec3> points;
   const bool needs_points = !source.grid_ || field_.interpolation->method != InterpolationMethod::linear;
   if (needs_points) {
-    const std::uint64_t needed = source.records() * std::uint64_t{2 * sizeof(Vec3)};
+    const std::uint64_t needed = source.records() * bytes_per_place;
     if (needed > data_.run.max_memory_bytes)
       return fault(Code::limit_memory, {field_.id_in_source, {}},
                    {std::to_string(data_.run.max_memory_bytes >> 20) + " MiB"});

@@ -8,6 +8,7 @@
 #include <random>
 
 #include "document_text.hpp"
+#include "meso/eval/pattern_reach.hpp"
 #include "meso/fields/base64.hpp"
 
 namespace meso::eval {
@@ -190,6 +191,34 @@ TEST(Derived, DirectionsOrientCells) {
   const double h = std::sqrt(0.5);
   expect_near(cells.at(0).world_from_cell.linear * Vec3{0, 0, 1}, {h, h, 0}, 1e-14);
   expect_near(cells.at(0).world_from_cell.linear * Vec3{1, 0, 0}, {-h, h, 0}, 1e-14);
+}
+
+/// What check_reach says about pattern "p" against a body of this box.
+std::string reach_of(const std::string& instructions, const Box3& body, const std::string& operation = "difference") {
+  const Evaluation evaluation = evaluation_of(
+      "<macrostructures><macrostructure id='m'><csg><box dx='1' dy='1' "
+      "dz='1'/></csg></macrostructure></macrostructures>" +
+      pattern_text("<scatter field='f'/>" + instructions, cell, "", four) +
+      "<parts><part id='q' macrostructure='m'><apply pattern='p' operation='" + operation + "'/></part></parts>");
+  const Part& part = evaluation.document().parts.items.at(0);
+  DiagnosticSink sink;
+  const bool good = check_reach(evaluation, stream_of(evaluation), part.steps.at(0), part, body, sink);
+  EXPECT_EQ(good, !sink.has_errors());
+  return sink.diagnostics().empty() ? "" : std::string(info(sink.diagnostics()[0].code).name);
+}
+
+// Records stand at x = 0 to 3, cells are balls of radius 1.
+TEST(Scatter, CellsReachTheBodyTheyCut) {
+  const Box3 near{{3.5, -1, -1}, {9, 1, 1}}, far{{4.5, -1, -1}, {9, 1, 1}};
+  EXPECT_EQ(reach_of("", near), "");
+  EXPECT_EQ(reach_of("", far), "FIELD_MISSES_PART");
+  EXPECT_EQ(reach_of("", far, "intersection"), "FIELD_MISSES_PART");
+  EXPECT_EQ(reach_of("", far, "union"), "");
+  EXPECT_EQ(reach_of("", Box3{}), "");
+  EXPECT_EQ(reach_of("<translate x='2'/>", far), "");
+  EXPECT_EQ(reach_of("<when test='f.s &gt; 5'/>", near), "");
+  EXPECT_EQ(reach_of("<when test='f.s &gt; 100'/>", near), "PATTERN_KEEPS_NONE");
+  EXPECT_EQ(reach_of("<when test='f.s &gt; 100'/>", far), "PATTERN_KEEPS_NONE");
 }
 
 TEST(FieldFaults, OneDiagnosticEach) {

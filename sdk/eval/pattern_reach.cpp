@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "meso/eval/pattern_reach.hpp"
+
+#include <algorithm>
+
+#include "scope.hpp"
+
+namespace meso::eval {
+namespace {
+
+enum class Found { none, some, failed };
+
+/// `visit` runs a visitor over cells; the first one is enough.
+template <class Visit>
+Found any(const Visit& visit, DiagnosticSink& sink) {
+  const std::size_t errors = sink.error_count();
+  bool found = false;
+  (void)visit([&](const PlacedCell&) {
+    found = true;
+    return false;
+  });
+  if (sink.error_count() > errors) return Found::failed;
+  return found ? Found::some : Found::none;
+}
+
+Found any_kept(const CellStream& cells, DiagnosticSink& sink) {
+  return any([&](const auto& visitor) { return cells.visit(0, cells.size(), visitor, sink); }, sink);
+}
+
+bool has_when(const Pattern& pattern) {
+  return std::ranges::any_of(pattern.instructions,
+                             [](const Instruction& i) { return std::holds_alternative<WhenInstruction>(i); });
+}
+
+}  // namespace
+
+bool check_keeps_any(const Evaluation& evaluation, const CellStream& cells, DiagnosticSink& sink) {
+  const Pattern& pattern = cells.pattern();
+  if (cells.size() == 0 || !has_when(pattern)) return true;
+  const Found found = any_kept(cells, sink);
+  if (found == Found::none)
+    Report{evaluation.checked().source(), sink}(Code::pattern_keeps_none, {pattern.id_in_source, {}},
+                                                {pattern.id.text, std::to_string(cells.size())});
+  return found != Found::failed;
+}
+
+bool check_reach(const Evaluation& evaluation, const CellStream& cells, const Apply& apply, const Part& part,
+                 const Box3& body_mm, DiagnosticSink& sink) {
+  const auto& scatter = cells.pattern().scatter;
+  if (scatter && apply.operation != ApplyOperation::union_ && !body_mm.empty() && cells.size() > 0) {
+    const Found touching = any([&](const auto& visitor) { return cells.visit_touching(body_mm, visitor, sink); }, sink);
+    if (touching != Found::none) return touching == Found::some;
+    if (const Found kept = any_kept(cells, sink); kept != Found::none) {
+      if (kept == Found::some)
+        Report{evaluation.checked().source(), sink}(Code::field_misses_part, {scatter->id_in_source, "field"},
+                                                    {std::to_string(cells.size()), scatter->field.text, part.id.text});
+      return false;
+    }
+  }
+  return check_keeps_any(evaluation, cells, sink);
+}
+
+}  // namespace meso::eval
