@@ -188,8 +188,8 @@ TRUSSES = {
 }
 
 
-def truss(rng, size):
-    """A random cell of beams: text, and a list of membership tests with their boxes."""
+def truss(rng, size, factor=1):
+    """A random cell of beams: text, and a list of membership tests with their boxes, all radii times the factor."""
     nodes, beams = TRUSSES[rng.choice(sorted(TRUSSES))]
     at = [[round(u * s, 6) for u, s in zip(n, size)] for n in nodes]
     short = min(size)
@@ -200,17 +200,17 @@ def truss(rng, size):
     for i, n in enumerate(at):
         text += f'<node id="n{i}" x="{n[0]}" y="{n[1]}" z="{n[2]}"/>'
         if ball:
-            tests.append((lambda p, n=n: math.dist(p, n) <= ball, n, n, ball))
+            tests.append((lambda p, n=n: math.dist(p, n) <= factor * ball, n, n, factor * ball))
     conical = rng.random() < 0.25
     for a, b in beams:
         r1 = radius
         r2 = round(radius * 0.7, 4) if conical else radius
         text += f'<beam from="n{a}" to="n{b}"' + (f' radius2="{r2}"' if conical else "") + "/>"
-        u, v = at[a], at[b]
-        tests.append((lambda p, u=u, v=v, r2=r2: in_frustum(p, u, v, r1, r2), u, v, max(r1, r2)))
+        u, v, ra, rb = at[a], at[b], factor * r1, factor * r2
+        tests.append((lambda p, u=u, v=v, ra=ra, rb=rb: in_frustum(p, u, v, ra, rb), u, v, max(ra, rb)))
         if cap == "sphere":
-            tests.append((lambda p, u=u: math.dist(p, u) <= r1, u, u, r1))
-            tests.append((lambda p, v=v, r2=r2: math.dist(p, v) <= r2, v, v, r2))
+            tests.append((lambda p, u=u, ra=ra: math.dist(p, u) <= ra, u, u, ra))
+            tests.append((lambda p, v=v, rb=rb: math.dist(p, v) <= rb, v, v, rb))
     attributes = f'radius="{radius}" cap="{cap}"' + (f' nodeRadius="{ball}"' if ball else "")
     boxed = [(t, [min(x, y) - r for x, y in zip(u, v)], [max(x, y) + r for x, y in zip(u, v)]) for t, u, v, r in tests]
     return f"<beams {attributes}>{text}</beams>", boxed
