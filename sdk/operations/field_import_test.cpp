@@ -95,5 +95,22 @@ TEST(ImportField, WritesNothingForNumbersThatAreNone) {
   EXPECT_EQ(info->columns.at(3).statistics.nan, 1U);
 }
 
+TEST(ImportField, AMeshOfTwoKindsIsToldAndNotHalved) {
+  const std::string in = testing::TempDir() + "mixed.vtk", out = testing::TempDir() + "mixed.meso";
+  std::filesystem::remove(out);
+  std::ofstream(in) << "# vtk DataFile Version 2.0\nmixed\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 9 double\n"
+                       "0 0 0 1 0 0 1 1 0 0 1 0 0 0 1 1 0 1 1 1 1 0 1 1 0.5 0.5 2\nCELLS 2 14\n"
+                       "8 0 1 2 3 4 5 6 7\n4 4 5 6 8\nCELL_TYPES 2\n12 10\nPOINT_DATA 9\nSCALARS s double 1\n"
+                       "LOOKUP_TABLE default\n1 2 3 4 5 6 7 8 9\n";
+  DiagnosticSink sink;
+  EXPECT_FALSE(import_field(in, out, {}, sink));
+  ASSERT_EQ(sink.diagnostics().size(), 1U);
+  EXPECT_THAT(render(sink.diagnostics()[0]), testing::HasSubstr("of both 1 tetrahedra and 1 hexahedra, in a document"));
+  EXPECT_FALSE(std::filesystem::exists(out));
+  const auto info = field_info(in, {}, sink);
+  ASSERT_TRUE(info);
+  EXPECT_EQ(info->hexa, 1U);
+}
+
 }  // namespace
 }  // namespace meso::operations
