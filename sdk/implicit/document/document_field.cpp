@@ -8,6 +8,7 @@
 #include "fragments.hpp"
 #include "meso/base/unit.hpp"
 #include "meso/eval/bounds.hpp"
+#include "meso/eval/pattern_reach.hpp"
 #include "pattern_field.hpp"
 #include "shape_field.hpp"
 
@@ -30,7 +31,7 @@ class PartMaker {
     }
     for (const Apply& apply : part.steps) {
       const Body before = body;
-      body = apply.pattern ? with_cells(body, apply) : with_part(body, apply);
+      body = apply.pattern ? with_cells(body, part, apply) : with_part(body, apply);
       if (body && before && apply.fragments.value_or(FragmentRule::keep) != FragmentRule::keep)
         body = without_fragments(*body, *before, part, apply);
       if (!body) return std::nullopt;
@@ -72,9 +73,10 @@ class PartMaker {
     return operand ? std::optional(combined(body, moved(*operand, *placement), apply.operation)) : std::nullopt;
   }
 
-  std::optional<Field> with_cells(const Body& body, const Apply& apply) {
+  std::optional<Field> with_cells(const Body& body, const Part& part, const Apply& apply) {
     const auto cells = evaluation_.cells(*evaluation_.find_pattern(apply.pattern->text), report_.sink());
-    if (!cells) return std::nullopt;
+    if (!cells || !eval::check_reach(evaluation_, *cells, apply, part, body ? body->bounds() : Box3{}, report_.sink()))
+      return std::nullopt;
     const BoundaryRule rule = apply.boundary.value_or(BoundaryRule::clip);
     KeepCell keep;
     if (rule != BoundaryRule::clip) {
