@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Checks the direction beam against numpy, which reads the field file by itself. Needs neither Gmsh nor CalculiX.
 
-usage: check.py MESO     exit 0 if all holds, 1 if not, 77 without numpy
+usage: check.py MESO [FOLDER]     with direction-beam.meso and its files; exit 0 if all holds, 1 if not, 77 without numpy
 
  1. direction-beam.meso is valid, makes 1 120 voids, and has the volume that the closed form gives.
  2. The cells' axes are the eigenvectors of the stress to 1e-9 rad, wherever eigenvalues are 1e-3 MPa apart.
@@ -24,7 +24,8 @@ except ImportError:
     print("numpy is not installed: skipped")
     sys.exit(77)
 
-HERE = pathlib.Path(__file__).resolve().parent
+HERE = pathlib.Path(sys.argv[2] if len(sys.argv) > 2 else __file__).resolve()
+HERE = HERE if HERE.is_dir() else HERE.parent
 ORDERS = ("xx", "yy", "zz", "xy", "yz", "zx")
 FLANGES, WEB = (10, 2, 40), (8, 40)  # x y z and y z
 failures = 0
@@ -148,7 +149,7 @@ def check_body(program):
 
 
 def main():
-    if len(sys.argv) != 2:
+    if len(sys.argv) not in (2, 3):
         sys.exit(__doc__)
     program = sys.argv[1]
     flanges, web = read_field()
