@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "meso/operations/convert.hpp"
 
+#include <algorithm>
+
 #include "file_extension.hpp"
 #include "meso/brep/audit.hpp"
+#include "meso/brep/gaps.hpp"
 #include "meso/brep/triangles.hpp"
 #ifdef MESO_WITH_IMPLICIT_ENGINE
 #include "make_mesh.hpp"
@@ -50,10 +53,20 @@ bool fits(const fs::path& out, const MakeOptions& options, const WriteOptions& w
     return refuse("--engine implicit makes triangles; '" + out.string() + "' is to hold exact faces");
   if (options.engine == Engine::brep && samples)
     return refuse("--spacing and --samples have an effect for the implicit engine only; see --deflection");
+  if (options.engine == Engine::brep && options.measure)
+    return refuse("--measure has an effect for the implicit engine only; the exact one always measures");
   if (options.engine == Engine::implicit && fine)
     return refuse("--deflection and --angle have an effect for the exact engine only; see --spacing");
   if (write.ascii && lower_extension(out) != ".stl") return refuse("--ascii has an effect for .stl only");
   return true;
+}
+
+/// Whether a part that is made leaves out what its steps cut loose.
+bool drops_fragments(const Document& document, const std::string& only) {
+  return std::ranges::any_of(document.parts, [&](const Part& part) {
+    return (only.empty() || part.id.text == only) &&
+           std::ranges::any_of(part.steps, [](const Apply& apply) { return apply.fragments == FragmentRule::drop; });
+  });
 }
 
 std::optional<ConvertReport> convert_exactly(const fs::path& in, const fs::path& out, const MakeOptions& options,
@@ -67,7 +80,7 @@ std::optional<ConvertReport> convert_exactly(const fs::path& in, const fs::path&
   if (!written) return std::nullopt;
   ConvertReport report{.way = made->realisation.way,
                        .cells = made->realisation.cells,
-                       .fragments = body.fragments,
+                       .clip = made->realisation.clip,
                        .triangles = written->triangles,
                        .bytes = written->bytes,
                        .deflection_mm = made->deflection_mm,
@@ -75,6 +88,9 @@ std::optional<ConvertReport> convert_exactly(const fs::path& in, const fs::path&
                        .seconds = made->seconds};
   report.seconds.write = writing.lap();
   report.measures = brep::measure(body);
+  if (report.triangles > 0) report.triangles_volume = brep::volume_of_triangles(body);
+  (drops_fragments(made->evaluation.document(), options.part) ? report.dropped_fragments : report.fragments) =
+      body.fragments;
   report.closed = brep::audit(body).clean();
   report.seconds.total = watch.total();
   return report;
@@ -90,6 +106,13 @@ bool is_beyond_exact_engine(const DiagnosticSink& told) {
     return exit_code == 4 || exit_code == 5 || d.code == Code::limit_booleans;
   }
   return false;
+}
+
+/// Geometry that the exact engine should have been able to make, not one that it is not made for.
+bool failed(const DiagnosticSink& told) {
+  return std::ranges::any_of(told.diagnostics(), [](const Diagnostic& d) {
+    return d.code == Code::geometry_not_repeatable || info(d.code).exit_code == 5;
+  });
 }
 
 void tell(std::string why, DiagnosticSink& sink) {
@@ -112,8 +135,12 @@ std::optional<ConvertReport> convert_to_mesh(const fs::path& in, const fs::path&
         return report;
       }
       why = "the exact one answers: " + message(told.diagnostics().front());
+      if (failed(told)) {
+        sink.report({.code = Code::engine_fallback, .args = {message(told.diagnostics().front())}});
+        why.clear();
+      }
     }
-    tell(std::move(why), sink);
+    if (!why.empty()) tell(std::move(why), sink);
   }
   auto report = make_mesh(*evaluation, out, options, write, sink);
   if (!report) return std::nullopt;

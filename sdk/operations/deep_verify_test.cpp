@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <numbers>
 
 namespace meso::operations {
 namespace {
@@ -33,19 +34,28 @@ class DeepVerify : public ::testing::Test {
   }
   /// Names of the checks that fail after `damage`.
   template <class Damage>
-  std::vector<std::string> failures(Damage damage) {
+  std::vector<std::string> failures(Damage damage, std::optional<std::size_t> points = 100'000) {
     auto made = make_body(file_, {.part = "p", .mesh = true, .deflection_mm = 0.01}, sink_);
     if (!made) return {"not made"};
     damage(made->realisation.body);
     VerifyReport report;
-    EXPECT_TRUE(check_deep(report, *made, *made->evaluation.find_part("p"), {.points = 100'000}, {}, sink_));
+    EXPECT_TRUE(check_deep(report, *made, *made->evaluation.find_part("p"), {.points = points}, {}, sink_));
+    if (!report.deep.empty()) figures_ = report.deep.front();
     std::vector<std::string> names;
     for (const Check& c : report.checks)
       if (!c.passed) names.push_back(c.what);
     return names;
   }
+  /// A template that is like that of the outer shell, but for `change`.
+  template <class Change>
+  static void change_outer(brep::Body& body, Change change) {
+    brep::Template changed = *body.solids[0].outer.geometry;
+    change(changed);
+    body.solids[0].outer.geometry = std::make_shared<const brep::Template>(std::move(changed));
+  }
   std::filesystem::path file_;
   DiagnosticSink sink_;
+  DeepFigures figures_;
 };
 
 using Names = std::vector<std::string>;
@@ -53,12 +63,90 @@ using Names = std::vector<std::string>;
 TEST_F(DeepVerify, AWholeBodyPasses) {
   write();
   EXPECT_EQ(failures([](brep::Body&) {}), Names{});
+  const double volume = 2000 - 16 * std::numbers::pi / 3;
+  EXPECT_NEAR(figures_.shells_volume, volume, 1e-6);
+  EXPECT_NEAR(figures_.pieces_volume, volume, 1e-6);
+  EXPECT_NEAR(figures_.points_volume, volume, 4 * figures_.sigma);
+  EXPECT_NEAR(figures_.triangles_volume + figures_.triangles_gap_volume, volume, 5e-3);
+  EXPECT_LT(figures_.edge_gap, 1e-6);
+  EXPECT_EQ(figures_.solids, 1u);
+  ASSERT_EQ(figures_.shell_volumes.size(), 5u);
+  ASSERT_EQ(figures_.read_back_volumes.size(), 5u);
+  EXPECT_NEAR(figures_.read_back_volumes.back(), 2000, 1e-3);
+}
+
+TEST_F(DeepVerify, EnoughPointsForHalfAPercent) {
+  write();
+  EXPECT_EQ(failures([](brep::Body&) {}, std::nullopt), Names{});
+  EXPECT_LE(figures_.sigma, 1.05e-3 * figures_.shells_volume);
 }
 
 TEST_F(DeepVerify, AMissingVoid) {
   write();
   EXPECT_EQ(failures([](brep::Body& body) { body.solids[0].voids.pop_back(); }),
-            (Names{"volume by points", "points misjudged"}));
+            (Names{"volume of pieces", "volume by points", "points misjudged"}));
+}
+
+TEST_F(DeepVerify, AMissingShell) {
+  write();
+  const Names found = failures([](brep::Body& body) {
+    brep::Solid& solid = body.solids[0];
+    solid.outer = solid.voids.back();
+    solid.voids.clear();
+  });
+  EXPECT_TRUE(std::ranges::count(found, "volume of pieces"));
+  EXPECT_TRUE(std::ranges::count(found, "volume by points"));
+}
+
+TEST_F(DeepVerify, AFlippedFace) {
+  write();
+  const Names found = failures([](brep::Body& body) {
+    change_outer(body, [](brep::Template& geometry) {
+      brep::FaceTemplate& face = geometry.faces[0];
+      face.reversed = !face.reversed;
+      for (auto& loop : face.loops) {
+        std::ranges::reverse(loop);
+        for (brep::Coedge& use : loop) use.reversed = !use.reversed;
+      }
+      for (auto& triangle : face.mesh.triangles) std::swap(triangle[0], triangle[1]);
+      for (Vec3* moment : {&face.moments.volume_moment, &face.moments.vector_area, &face.moments.centroid_moment})
+        *moment = -*moment;
+    });
+  });
+  EXPECT_TRUE(std::ranges::count(found, "orientation conflicts"));
+  EXPECT_TRUE(std::ranges::count(found, "unmatched half-edges"));
+  EXPECT_EQ(figures_.unmatched_half_edges, 8u);  // the face's four sides, each used twice in one direction
+}
+
+TEST_F(DeepVerify, AMovedVertex) {
+  write();
+  EXPECT_EQ(failures([](brep::Body& body) {
+              change_outer(body, [](brep::Template& geometry) { geometry.vertices[0].x += 0.01; });
+            }).front(),
+            "vertices from edges");
+}
+
+TEST_F(DeepVerify, ATriangleThatIsElsewhere) {
+  write();
+  const Names found = failures([](brep::Body& body) {
+    change_outer(body, [](brep::Template& geometry) { geometry.faces[0].mesh.points[0].point.x += 1e-3; });
+  });
+  EXPECT_TRUE(std::ranges::count(found, "unmatched half-edges"));
+}
+
+TEST_F(DeepVerify, ABodyThatIsSlightlyTooLarge) {
+  write();
+  const double scale = std::cbrt(1.006);
+  const auto enlarge = [&](brep::Body& body) {
+    for (brep::Solid& solid : body.solids) {
+      solid.outer.placement = Affine{Mat3::from_columns({scale, 0, 0}, {0, scale, 0}, {0, 0, scale}), {}};
+      for (brep::Shell& hollow : solid.voids) hollow.placement = solid.outer.placement * hollow.placement;
+    }
+    body.pieces_volume *= 1.006;  // as if nobody had known
+  };
+  const Names found = failures(enlarge, std::nullopt);
+  EXPECT_TRUE(std::ranges::count(found, "volume by points"));
+  EXPECT_GT(figures_.difference, 3 * figures_.sigma);
 }
 
 TEST_F(DeepVerify, AVoidThatIsElsewhere) {
@@ -89,7 +177,7 @@ TEST_F(DeepVerify, ASolidTooMany) {
     body.solids[1].outer.placement.translation.x += 30;
     for (brep::Shell& hollow : body.solids[1].voids) hollow.placement.translation.x += 30;
   });
-  EXPECT_EQ(found, (Names{"solids", "volume by points", "points misjudged"}));
+  EXPECT_EQ(found, (Names{"volume of pieces", "solids", "volume by points", "points misjudged"}));
 }
 
 TEST_F(DeepVerify, DocumentsWithoutStatedValues) {

@@ -14,8 +14,7 @@
 #include "meso/implicit/contour.hpp"
 #include "meso/import_surface_mesh/read_surface_mesh.hpp"
 #include "meso/operations/macrostructure_distance.hpp"
-#include "meso/validate/validate.hpp"
-#include "meso/xml/read.hpp"
+#include "meso/package/open_document.hpp"
 #include "stopwatch.hpp"
 
 namespace meso::operations {
@@ -26,18 +25,19 @@ namespace {
 constexpr double import_deflection = 1e-4, import_angle = 0.1;
 
 std::optional<TriangleMesh> import_mesh(const eval::ImportShape& import, const RunOptions& run, DiagnosticSink& sink) {
-  const std::string extension = lower_extension(import.file);
+  const std::string extension = lower_extension(import.file.name());
   if (extension == ".step" || extension == ".stp") {
     const auto body =
         brep::read_step(import.file, {.relative_deflection = import_deflection, .angle_rad = import_angle}, run, sink);
     return body ? std::optional(triangle_mesh(*body)) : std::nullopt;
   }
-  return read_surface_mesh_file(import.file.string(), sink, run);
+  return read_surface_mesh_file(import.file, sink, run);
 }
 
 /// What is built: one field, and what is known of it.
 struct Built {
   implicit::Field field;
+  std::string names;  ///< of the parts
   double smallest_feature_mm = HUGE_VAL;
   brep::CellCounts cells;
 };
@@ -55,9 +55,9 @@ std::optional<Built> build(const eval::Evaluation& evaluation, const MakeOptions
     if (!part) return std::nullopt;
     const implicit::Field placed = implicit::moved(part->field, *placement);
     if (!all)
-      all = Built{placed};
+      all = Built{placed, item.part->id.text};
     else
-      all->field = implicit::union_of(all->field, placed);
+      all->field = implicit::union_of(all->field, placed), all->names += ", " + item.part->id.text;
     all->smallest_feature_mm = std::min(all->smallest_feature_mm, part->smallest_feature_mm);
     all->cells.placed += part->cells_placed;
     all->cells.kept += part->cells_kept;
@@ -66,8 +66,9 @@ std::optional<Built> build(const eval::Evaluation& evaluation, const MakeOptions
 }
 
 /// Into a file, measured on the way if that is asked for.
-bool write_mesh_file(const implicit::GridSource& source, const fs::path& out, const MakeOptions& options,
-                     const WriteOptions& write, ConvertReport& report, DiagnosticSink& sink) {
+bool write_mesh_file(const implicit::GridSource& source, const std::string& part_name, const fs::path& out,
+                     const MakeOptions& options, const WriteOptions& write, ConvertReport& report,
+                     DiagnosticSink& sink) {
   auto file = OutputFile::create(out.string(), write.no_clobber ? ExistingFile::refuse : ExistingFile::replace, sink);
   if (!file) return false;
   const MeshFormat format = *mesh_format_of(out.string());
@@ -77,7 +78,7 @@ bool write_mesh_file(const implicit::GridSource& source, const fs::path& out, co
   const auto contoured =
       implicit::contour(source, options.measure ? static_cast<MeshSink&>(measured) : *writer, {}, options.run, sink);
   if (contoured && contoured->triangles == 0) {  // what stands at `out` stays
-    sink.report({.code = Code::geometry_empty, .args = {options.part}});
+    sink.report({.code = Code::geometry_empty, .args = {part_name}});
     return false;
   }
   if (sink.error_count() > errors || !file->commit(sink) || !contoured) return false;
@@ -95,9 +96,7 @@ bool write_mesh_file(const implicit::GridSource& source, const fs::path& out, co
 std::optional<eval::Evaluation> open_document(const fs::path& document, const MakeOptions& options, Seconds& seconds,
                                               DiagnosticSink& sink) {
   Stopwatch watch;
-  auto read = read_document_file(document, sink);
-  const auto checked =
-      read ? validate(std::move(read->document), std::move(read->source), document.parent_path(), sink) : std::nullopt;
+  const auto checked = open_checked_document(document, options.run, sink);
   seconds.read = watch.lap();
   auto evaluation = checked
                         ? eval::Evaluation::make(*checked,
@@ -117,7 +116,7 @@ std::optional<ConvertReport> make_mesh(const eval::Evaluation& evaluation, const
   if (!built) return std::nullopt;
   const Box3 bounds = built->field.bounds();
   if (bounds.empty()) {
-    sink.report({.code = Code::geometry_empty, .args = {options.part}});
+    sink.report({.code = Code::geometry_empty, .args = {built->names}});
     return std::nullopt;
   }
   const auto grid = mesh_grid(evaluation, options, bounds, built->smallest_feature_mm, sink);
@@ -128,7 +127,7 @@ std::optional<ConvertReport> make_mesh(const eval::Evaluation& evaluation, const
   report.grid_nodes = grid->nodes;
   report.spacing_mm = std::max({grid->spacing(0), grid->spacing(1), grid->spacing(2)});
   report.seconds.realise = watch.lap();
-  if (!write_mesh_file(*source, out, options, write, report, sink)) return std::nullopt;
+  if (!write_mesh_file(*source, built->names, out, options, write, report, sink)) return std::nullopt;
   report.seconds.write = watch.lap();
   report.seconds.total = watch.total();
   return report;

@@ -233,6 +233,13 @@ std::optional<SdfReport> Job::run(const Output& output) {
   const auto box = sdf::box_of(program_, *field_, sink_);
   if (!box || !go_on(options_.run, sink_)) return std::nullopt;
   certainly_empty_ = box->certainly_empty;
+  // Beyond any grid, and beyond the numbers that count its nodes.
+  constexpr double most_along = 65534;
+  if (program_.samples.size() == 1 && std::cbrt(program_.samples[0]) > most_along) {
+    const double along = std::round(std::cbrt(program_.samples[0]));
+    sink_.report({.code = Code::limit_grid, .args = {format_number(along), "each axis", format_number(most_along)}});
+    return std::nullopt;
+  }
   report_.grid = grid_of(program_, box->box);
   report_.seconds.read = watch.lap();
   if (!write(output)) return std::nullopt;

@@ -6,13 +6,11 @@
 
 #include "audit_files.hpp"
 #include "deep_verify.hpp"
-#include "file_extension.hpp"
 #include "meso/base/number.hpp"
 #include "meso/brep/audit.hpp"
 #include "meso/brep/triangles.hpp"
 #include "meso/membership/crossings.hpp"
-#include "meso/validate/validate.hpp"
-#include "meso/xml/read.hpp"
+#include "meso/package/open_document.hpp"
 #include "prepare.hpp"
 #include "read_mesh.hpp"
 
@@ -112,9 +110,7 @@ bool check_one(VerifyReport& report, const fs::path& file, const Part& part, Mak
 
 std::optional<VerifyReport> verify_document(const fs::path& file, const MakeOptions& options,
                                             const std::optional<DeepCheck>& deep, DiagnosticSink& sink) {
-  auto read = read_document_file(file, sink);
-  if (!read) return std::nullopt;
-  const auto checked = validate(std::move(read->document), std::move(read->source), file.parent_path(), sink);
+  const auto checked = open_checked_document(file, options.run, sink);
   if (!checked) return std::nullopt;
   VerifyReport report{.closed = true};
   const auto parts = parts_to_check(checked->document(), options.part, deep.has_value());
@@ -135,12 +131,11 @@ bool VerifyReport::passed() const {
 
 std::optional<VerifyReport> verify(const fs::path& file, const MakeOptions& options,
                                    const std::optional<DeepCheck>& deep, DiagnosticSink& sink) {
-  const std::string extension = lower_extension(file);
   std::optional<VerifyReport> report;
   if (is_mesh_file(file)) {
     report = audit_mesh_file(file, options.run, sink);
-  } else if (extension == ".step" || extension == ".stp") {
-    report = audit_step(file, options.run, sink);
+  } else if (is_step_file(file)) {
+    report = audit_step(file, deep.has_value(), options.run, sink);
   } else {
     report = verify_document(file, options, deep, sink);
   }

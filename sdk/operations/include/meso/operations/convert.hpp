@@ -76,6 +76,8 @@ struct Written {
 /// False for .step .stp .stl, which are geometry already.
 [[nodiscard]] bool is_document(const std::filesystem::path& file);
 
+[[nodiscard]] bool is_step_file(const std::filesystem::path& file);
+
 /// True for the extensions that need triangles; empty for extensions nothing writes.
 [[nodiscard]] std::optional<bool> output_needs_mesh(const std::filesystem::path& file);
 
@@ -83,8 +85,12 @@ struct ConvertReport {
   std::string engine = "brep";
   std::string way;  ///< how the engine built the body: lattice, voids, boolean, direct
   brep::CellCounts cells;
+  brep::ClipCounts clip;
   brep::Measures measures;
-  std::uint64_t fragments = 0, triangles = 0, bytes = 0;
+  std::uint64_t fragments = 0;  ///< loose ones; those that the document drops are not in the file
+  std::uint64_t dropped_fragments = 0;
+  std::uint64_t triangles = 0, bytes = 0;
+  double triangles_volume = 0;  ///< what a file of triangles encloses; `measures` are those of the exact body
   bool closed = false;
   double deflection_mm = 0, angle_rad = 0;
   // Of the implicit engine: its grid, and instead of `measures` those of the mesh if they are asked for.

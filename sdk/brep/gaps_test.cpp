@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "meso/brep/gaps.hpp"
+
+#include <gtest/gtest.h>
+
+#include "meso/brep/measure.hpp"
+#include "meso/brep/triangles.hpp"
+#include "shape_to_body.hpp"
+#include "test_bodies.hpp"
+
+namespace meso::brep {
+namespace {
+
+double summed_volume(const Body& body) {
+  double volume = 0;
+  visit_triangles(body, [&](std::span<const Triangle> block) {
+    for (const Triangle& t : block) volume += dot(t[0], cross(t[1], t[2])) / 6;
+  });
+  return volume;
+}
+
+std::optional<Body> meshed(const TopoDS_Shape& shape) {
+  DiagnosticSink sink;
+  return shape_to_body(shape, {.mesh = MeshTolerance{.deflection_mm = 0.05, .angle = 0.5}}, sink);
+}
+
+class GapsOf : public testing::TestWithParam<ClosedForm> {};
+INSTANTIATE_TEST_SUITE_P(ClosedForms, GapsOf, testing::ValuesIn(closed_forms()),
+                         [](const auto& test) { return test.param.name; });
+
+TEST_P(GapsOf, TrianglesAndWhatIsMissingMakeTheVolume) {
+  const auto body = meshed(GetParam().shape);
+  ASSERT_TRUE(body);
+  const Gaps gaps = measure_gaps(*body);
+  EXPECT_NEAR(volume_of_triangles(*body), summed_volume(*body), 1e-9 * GetParam().volume);
+  EXPECT_NEAR(summed_volume(*body) + gaps.triangles_mm3, GetParam().volume,
+              0.1 * gaps.triangles_abs_mm3 + 1e-6 * GetParam().volume);
+  EXPECT_LE(std::fabs(gaps.triangles_mm3), gaps.triangles_abs_mm3);
+  EXPECT_LT(gaps.edge_mm, 1e-5);
+  EXPECT_LT(gaps.vertex_mm, 1e-5);
+}
+
+TEST(Gaps, ABallOfTrianglesIsTooSmall) {
+  const auto body = meshed(BRepPrimAPI_MakeSphere(2).Solid());
+  ASSERT_TRUE(body);
+  const Gaps gaps = measure_gaps(*body);
+  EXPECT_GT(gaps.triangles_mm3, 0.1);
+  EXPECT_GT(gaps.triangle_mm, 0.01);
+  EXPECT_LT(gaps.triangle_mm, 0.1);
+}
+
+/// A drilled cube, changed.
+Gaps after(const std::function<void(Template&)>& damage) {
+  const TopoDS_Shape cube = BRepPrimAPI_MakeBox(10, 10, 10).Solid();
+  const TopoDS_Shape drill = BRepPrimAPI_MakeCylinder(gp_Ax2(gp_Pnt(5, 5, -1), gp::DZ()), 2, 12).Solid();
+  auto body = meshed(BRepAlgoAPI_Cut(cube, drill).Shape());
+  if (!body) return {};
+  Template changed = *body->solids[0].outer.geometry;
+  damage(changed);
+  body->solids[0].outer.geometry = std::make_shared<const Template>(std::move(changed));
+  return measure_gaps(*body);
+}
+
+TEST(Gaps, ThingsThatWereMovedAreFound) {
+  EXPECT_LT(after([](Template&) {}).vertex_mm, 1e-9);
+  EXPECT_NEAR(after([](Template& t) { t.vertices[0].x += 0.01; }).vertex_mm, 0.01, 1e-6);
+  EXPECT_NEAR(after([](Template& t) {
+                for (FaceTemplate& face : t.faces)
+                  if (auto* cylinder = std::get_if<CylinderSurface>(&face.surface)) cylinder->radius += 0.02;
+              }).edge_mm,
+              0.02, 1e-6);
+  EXPECT_NEAR(after([](Template& t) {
+                for (FaceTemplate& face : t.faces)
+                  if (auto* plane = std::get_if<Plane>(&face.surface)) {
+                    plane->frame.origin += 0.003 * plane->frame.z;
+                    break;
+                  }
+              }).edge_mm,
+              0.003, 1e-6);
+}
+
+}  // namespace
+}  // namespace meso::brep

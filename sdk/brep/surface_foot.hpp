@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// The point of a surface that is nearest to another point. Private.
+
+#include "meso/brep/body.hpp"
+#include "occt.hpp"
+
+class ShapeAnalysis_Surface;
+
+namespace meso::brep {
+
+/// Closed forms, but for B-splines: those are searched, and the last answer is where the next search begins.
+class SurfaceFoot {
+ public:
+  explicit SurfaceFoot(const Surface& surface);
+  [[nodiscard]] Vec3 operator()(Vec3 p);
+
+ private:
+  const Surface& surface_;
+  Handle(ShapeAnalysis_Surface) search_;
+  gp_Pnt2d last_;
+  bool has_last_ = false;
+};
+
+}  // namespace meso::brep
