@@ -15,6 +15,7 @@ import sys
 import tempfile
 import time
 import unittest
+import zipfile
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 MESO = str(pathlib.Path(sys.argv.pop(1)).resolve())
@@ -76,6 +77,7 @@ class CommandTest(unittest.TestCase):
 
     def file(self, name, text):
         path = self.folder / name
+        path.parent.mkdir(exist_ok=True)
         path.write_bytes(text if isinstance(text, bytes) else text.encode())
         return path
 
@@ -243,8 +245,36 @@ class ExitCodes(CommandTest):
         for flags in (["--engine", "brep", "--spacing", "1mm"], ["--engine", "implicit", "--deflection", "1mm"],
                       ["--samples", "1"], ["--samples", "2,3"], ["--spacing", "0"], ["--spacing", "1mm", "--samples", "9"]):
             self.expect(2, "convert", solid, self.out("d.ply"), *flags)
+        self.expect(5, "convert", field, self.out("d.ply"), "--samples", "2,2,2", says="part 'a'")
+        self.expect(2, "convert", solid, self.out("d.ply"), "--engine", "brep", "--measure", says="--measure")
+        self.assertGreater(exact["trianglesVolume"], 0.9 * exact["volume"])
+        self.assertLess(exact["trianglesVolume"], exact["volume"])
         self.expect(6, "convert", field, self.out("d.ply"), "--samples", "60000^3", "--max-memory", "64M", says="LIMIT_GRID")
         self.assertFalse(pathlib.Path(self.out("d.ply")).exists())
+
+    @needs("render")
+    def test_a_cut_beside_the_part(self):
+        self.expect(2, "render", self.file("a.meso", document()), self.out("a.png"), "--cut", "z=90mm", says="does not meet the part")
+        self.assert_nothing_written()
+
+    @needs("convert")
+    def test_fragments_that_are_dropped(self):
+        text = document(macrostructures='<macrostructures><macrostructure id="m"><csg><box x="-3" y="-3" z="-3" dx="16" dy="6" dz="6"/></csg></macrostructure></macrostructures>',
+                        part=' macrostructure="m"').replace('operation="union"', 'operation="intersection" fragments="drop"')
+        file = self.file("a.meso", text)
+        told = self.expect(0, "convert", file, self.out("a.step")).stderr.decode()
+        self.assertIn("fragments dropped", told)
+        self.assertNotIn("loose fragments", told)
+        report = json.loads(self.expect(0, "convert", file, self.out("a.step"), "--json").stdout)
+        self.assertEqual((report["solids"], report["fragments"], report["droppedFragments"]), (1, 0, 2))
+
+    @needs("convert")
+    def test_step_files_are_audited(self):
+        out = self.out("a.step")
+        self.expect(0, "convert", BEAM, out, "--set", "pitch=10mm")
+        own = json.loads(self.expect(0, "verify", out, "--json").stdout)
+        self.assertEqual((own["closed"], own["solids"], own["notes"]), (True, 1, []))
+        self.assertEqual(len(own["shellVolumes"]), 1)
 
     @needs("convert")
     def test_limits_of_time_and_memory(self):
@@ -307,6 +337,12 @@ class Outputs(CommandTest):
         rows = json.loads(done.stdout)
         self.assertEqual([sorted(row) for row in rows], [sorted(COMPARE_KEYS)])
         self.assertEqual(set(rows[0]["seconds"]), SECONDS)
+        made_elsewhere = self.file("scan/scan.meso", document(macrostructures='<macrostructures><macrostructure id="m"><import href="scan.step"/></macrostructure></macrostructures>'))
+        self.expect(3, "compare", made_elsewhere, says="HREF_NOT_FOUND")
+        self.file("scan/run.sh", "")
+        done = self.expect(0, "compare", made_elsewhere, self.folder / "scan" / "gone.meso", self.folder / "good.meso", says="COMPARE_NOT_MADE")
+        self.assertRegex(done.stdout.decode(), r"(?s)good .*\nscan +not made; run .*/scan/run.sh\ngone +not made")
+        self.expect(2, "verify", self.folder / "good.meso", says="--deep")
         failed = self.expect(6, "convert", self.file("a.meso", document(count="10^12")), self.out("b.step"), "--json")
         self.assertEqual(json.loads(failed.stdout)["diagnostics"][0]["code"], "LIMIT_CELLS")
 
@@ -348,6 +384,95 @@ class Outputs(CommandTest):
                 self.assert_nothing_written()
 
 
+@needs("pack")
+class Packages(CommandTest):
+    def packed_beam(self):
+        """A package of the beam, and nothing else that a verb could read."""
+        package = self.folder / "beam.mesoz"
+        self.expect(0, "pack", BEAM, package)
+        return package
+
+    def same(self, verb, package, *flags, output=None, code=0):
+        """The verb prints, and writes, of a package what it does of the document; and writes nothing else."""
+        elsewhere = self.folder / "elsewhere"
+        elsewhere.mkdir(exist_ok=True)
+        seen = []
+        for source in (BEAM, package):
+            names = [self.out(output)] if output else []
+            done = self.expect(code, verb, source, *names, *flags, cwd=elsewhere, env={**os.environ, "TMPDIR": str(elsewhere)})
+            seen.append((done.stdout.replace(str(source).encode(), b""), names[0].read_bytes() if names else b""))
+        self.assertEqual(list(elsewhere.iterdir()), [])
+        return seen
+
+    def test_every_verb_reads_packages(self):
+        package = self.packed_beam()
+        for verb, flags, output in [("validate", ["--json"], None), ("info", [], None), ("eval", [], "cells.csv"),
+                                    ("convert", ["--set", "pitch=10mm"], "beam.step"),
+                                    ("convert", ["--engine", "implicit", "--samples", "20"], "beam.ply"),
+                                    ("render", ["--set", "pitch=10mm", "--width", "64", "--height", "48"], "beam.png")]:
+            if verb in VERBS:
+                with self.subTest(verb=verb):
+                    folder, packed = self.same(verb, package, *flags, output=output)
+                    self.assertEqual(folder, packed)
+        # The sum that pack has added is all that differs.
+        folder, packed = self.same("canonical", package)
+        self.assertEqual(re.sub(rb' sha256="[0-9a-f]{64}"', b"", packed[0]), folder[0])
+        self.assertNotEqual(packed, folder)
+
+    @needs("verify")
+    def test_verify_and_compare_read_packages(self):
+        package = self.packed_beam()
+        self.expect(0, "verify", package)
+        rows = json.loads(self.expect(0, "compare", BEAM, package, "--deflection", "1mm", "--json").stdout)
+        self.assertEqual(rows[0]["packed"], package.stat().st_size)
+        self.assertEqual(rows[1]["framework"], rows[0]["framework"] + len(' sha256=""') + 64)
+        for key in ("cells", "macroStep", "partStep", "partStl", "packed"):
+            self.assertEqual(rows[0][key], rows[1][key], key)
+
+    @needs("field")
+    def test_fields_in_packages(self):
+        package = self.folder / "holes.mesoz"
+        source = ROOT / "examples" / "documents"
+        self.expect(0, "pack", source / "holes_at_records.meso", package)
+        self.assertEqual(self.expect(0, "field", "info", package / "stress.csv").stdout,
+                         self.expect(0, "field", "info", source / "stress.csv").stdout)
+        self.expect(3, "field", "info", package / "nothing.csv", says="IMPORT_UNREADABLE")
+
+    def test_packages_that_are_refused(self):
+        package = self.packed_beam()
+        for name, says in (("../../up.txt", "leads out"), ("/up.txt", "absolute"), ("more.txt", "does not list it")):
+            bad = self.folder / "bad.mesoz"
+            shutil.copy(package, bad)
+            with zipfile.ZipFile(bad, "a") as archive:
+                archive.writestr(name, "x")
+            for arguments in (["validate", bad], ["unpack", bad, self.out("folder")]):
+                self.expect(1, *arguments, says=says)
+            self.assert_nothing_written()
+        self.expect(6, "unpack", package, self.out("folder"), "--max-memory", "10K", says="PACKAGE_TOO_LARGE")
+        cut = self.file("cut.mesoz", package.read_bytes()[:-30])
+        self.expect(3, "unpack", cut, self.out("folder"), says="PACKAGE_UNREADABLE")
+        self.expect(3, "validate", self.folder / "nothing.mesoz", says="FILE_NOT_FOUND")
+        self.assert_nothing_written()
+
+    def test_what_is_there_stays(self):
+        package = self.packed_beam()
+        self.expect(7, "pack", BEAM, package, "--no-clobber", says="WRITE_EXISTS")
+        self.expect(2, "pack", BEAM, self.out("beam.zip"), says="pack writes .mesoz")
+        self.expect(0, "unpack", package, self.out("folder"))
+        self.expect(7, "unpack", package, self.out("folder"), says="WRITE_EXISTS")
+        self.assertEqual(sorted(f.name for f in self.out("folder").iterdir()), ["ibeam.meso", "ibeam.step", "manifest.sha256"])
+
+    @needs("render")
+    def test_thumbnail(self):
+        small, package = self.file("small.meso", document()), self.out("small.mesoz")
+        self.expect(0, "pack", small, package, "--thumbnail")
+        with zipfile.ZipFile(package) as archive:
+            self.assertEqual(archive.namelist(), ["mimetype", "manifest.sha256", "small.meso", "thumbnail.png"])
+            self.assertTrue(archive.read("thumbnail.png").startswith(b"\x89PNG"))
+        self.assertTrue(package.read_bytes()[30:].startswith(b"mimetypeapplication/vnd.meso+zip"))
+        self.expect(0, "validate", package)
+
+
 @needs("sdf")
 class CommandLanguage(CommandTest):
     def sdf(self, code, words, says=""):
@@ -374,7 +499,7 @@ class CommandLanguage(CommandTest):
         (self.folder / "full.ply").symlink_to("/dev/full")
         for code, says, words in ((2, "SDF_STACK_LEFT", ""), (2, "SDF_STACK_LEFT", "ball ball"), (2, "SDF_STACK_UNDERFLOW", "union"),
                                   (2, "^~~", "ball bxo"), (2, "SDF_VALUE", "ball scale 0"), (2, "SDF_INCLUDE", "@loop.txt"),
-                                  (2, "SDF_EXTENSION", "ball -o a.step"), (2, "USAGE", "ball --jobs many"), (2, "USAGE", "ball --double -o a.stl"),
+                                  (2, ".vtu .msh .inp", "ball -o a.step"), (6, "10000000000 nodes", "ball -s 1e30"), (2, "USAGE", "ball --jobs many"), (2, "USAGE", "ball --double -o a.stl"),
                                   (2, "SDF_UNKNOWN_WORD", "ball --max-cells 3"), (3, "FILE_NOT_FOUND", "@none.txt"), (3, "FILE_NOT_FOUND", "file none.ply"),
                                   (3, "MESH_FILE", "file empty.off"), (7, "WRITE_FAILED", "ball -o none/a.ply"), (7, "WRITE_FAILED", "ball -s 200^3 -o full.ply"),
                                   (6, "LIMIT", "tpms.gyroid -s 30000,30000,30000 --max-memory 256M -o a.ply"), (6, "LIMIT_TIME", "tpms.gyroid -s 3000,3000,3000 --timeout 0.2 -o a.ply")):

@@ -13,5 +13,4 @@ volume=$(python3 -c 'import json, sys; print(json.load(open(sys.argv[1]))["volum
 # Flat triangles fill a little less than round struts.
 tolerance=1e-4
 if [[ $format == stl ]]; then tolerance=0.1; fi
-# Debian's FreeCAD belongs to Debian's Python.
-/usr/bin/python3 scripts/check_freecad.py "$folder/beam.$format" "$volume" "$tolerance"
+scripts/check_freecad.py "$folder/beam.$format" "$volume" "$tolerance"

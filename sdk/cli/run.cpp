@@ -10,17 +10,18 @@
 
 #include "meso/base/number.hpp"
 #include "meso/expr/expression.hpp"
-#include "meso/validate/validate.hpp"
-#include "meso/xml/read.hpp"
+#include "meso/package/open_document.hpp"
 #include "stop.hpp"
 
 namespace meso::cli {
 namespace {
 
-void limit_memory(std::uint64_t bytes) {
-  // Private writable memory: what bad_alloc should be about. Address space (RLIMIT_AS) would count mapped files and
-  // reserved arenas.
-  const rlimit limit{bytes, bytes};
+void limit_memory(std::uint64_t bytes, const std::string& text) {
+  end_beyond(bytes, text);
+  // Where memory is taken faster than that is noticed. Private writable memory: address space (RLIMIT_AS) would count
+  // mapped files and reserved arenas.
+  const std::uint64_t most = bytes + bytes / 4 + (std::uint64_t{64} << 20);
+  const rlimit limit{most, most};
   setrlimit(RLIMIT_DATA, &limit);
 }
 
@@ -68,6 +69,9 @@ void add_mesh_flags(CLI::App& verb, Flags& flags) {
   verb.add_option("--angle", flags.angle, "Largest angle between neighbouring triangles, e.g. 0.5rad or 20deg")
       ->type_name("ANG");
 }
+void add_memory_flag(CLI::App& verb, Flags& flags) {
+  verb.add_option("--max-memory", flags.max_memory, "Give up beyond this much memory, e.g. 2G")->type_name("SIZE");
+}
 void add_work_flags(CLI::App& verb, Flags& flags) {
   verb.add_option("--jobs", flags.jobs, "Threads; 0 is one per core. Output bytes do not depend on it")->type_name("N");
   verb.add_option("--timeout", flags.timeout, "Give up after this many seconds")
@@ -76,7 +80,7 @@ void add_work_flags(CLI::App& verb, Flags& flags) {
         const auto seconds = parse_number(text);
         return seconds && *seconds > 0 && *seconds <= 1e9 ? "" : "'" + text + "' is not a number of seconds up to 1e9";
       });
-  verb.add_option("--max-memory", flags.max_memory, "Give up beyond this much memory, e.g. 2G")->type_name("SIZE");
+  add_memory_flag(verb, flags);
   verb.add_option("--progress", flags.progress, "auto, bar, json or none")
       ->type_name("STYLE")
       ->check(CLI::IsMember({"auto", "bar", "json", "none"}));
@@ -99,7 +103,7 @@ RunOptions Run::options() {
   if (!flags.max_memory.empty()) {
     if (const auto bytes = parse_size(flags.max_memory)) {
       out.max_memory_bytes = *bytes;
-      limit_memory(*bytes);
+      limit_memory(*bytes, flags.max_memory);
     } else {
       usage_error("--max-memory: '" + flags.max_memory + "' is not a size such as 512M or 2G");
     }
@@ -107,6 +111,7 @@ RunOptions Run::options() {
   out.cancelled = stop_requested;
   progress_.emplace(progress_style(flags.progress));
   out.progress = [this](std::string_view stage, double fraction) { progress_->show(stage, fraction); };
+  options_ = out;
   return out;
 }
 
@@ -117,9 +122,7 @@ void Run::refuse_without_effect(std::initializer_list<GivenFlag> all, const char
 }
 
 std::optional<CheckedDocument> Run::open(const std::string& file) {
-  auto read = read_document_file(file, sink);
-  if (!read) return std::nullopt;
-  return validate(std::move(read->document), std::move(read->source), std::filesystem::path(file).parent_path(), sink);
+  return open_checked_document(file, options_.value_or(RunOptions{}), sink);
 }
 
 void Run::print_diagnostics() {
@@ -136,12 +139,21 @@ const Diagnostic* Run::first_error() const {
 }
 
 int Run::finish() {
+  explain_stop();
   print_diagnostics();
   const Diagnostic* error = first_error();
   return error == nullptr ? 0 : info(error->code).exit_code;
 }
 
+/// What was told after memory ran out, is its consequence.
+void Run::explain_stop() {
+  if (!memory_ran_out() || first_error() == nullptr) return;
+  sink = DiagnosticSink();
+  sink.report({.code = Code::limit_memory, .args = {flags.max_memory}});
+}
+
 int Run::finish(Json report) {
+  explain_stop();
   if (const Diagnostic* error = first_error()) report["error"] = error_json(*error);
   report["diagnostics"] = diagnostics_json(sink);
   const int code = finish();

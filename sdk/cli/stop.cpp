@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "stop.hpp"
 
+#include <fcntl.h>
 #include <unistd.h>
 
+#include <array>
 #include <atomic>
 #include <chrono>
 #include <csignal>
 #include <cstdio>
 #include <mutex>
+#include <sstream>
 #include <thread>
 #include <vector>
 
@@ -19,6 +22,9 @@ namespace {
 std::atomic<bool> stop{false};
 std::atomic<bool> in_json{false}, answered{false};
 std::atomic<std::int64_t> deadline_ns{0};  // steady clock; 0: none
+std::atomic<std::uint64_t> most_bytes{0};  // 0: any number
+std::atomic<bool> out_of_memory{false};
+std::string most_bytes_text;  // set before most_bytes is
 
 using Clock = std::chrono::steady_clock;
 namespace fs = std::filesystem;
@@ -35,14 +41,15 @@ void remove_unfinished_files() {
     for (const auto& entry : fs::directory_iterator(folder, error)) {
       const std::string name = entry.path().filename().string();
       if (name.starts_with('.') && name.ends_with(".tmp") && name.find(mark) != std::string::npos)
-        fs::remove(entry.path(), error);
+        fs::remove_all(entry.path(), error);
     }
   }
 }
 
 [[noreturn]] void end_now(Code code) {
   remove_unfinished_files();
-  const Diagnostic why{.code = code};
+  Diagnostic why{.code = code};
+  if (code == Code::limit_memory) why.args = {most_bytes_text};
   if (in_json && claim_answer()) {
     std::fputs((Json{{"error", error_json(why)}, {"diagnostics", Json::array()}}.dump(2) + "\n").c_str(), stdout);
     std::fflush(stdout);
@@ -61,20 +68,37 @@ sigset_t stop_signals() {
   return set;
 }
 
+/// What RLIMIT_DATA counts: private writable memory.
+std::uint64_t data_bytes() {
+  std::array<char, 256> text{};
+  const int file = ::open("/proc/self/statm", O_RDONLY | O_CLOEXEC);
+  const ssize_t size = file < 0 ? 0 : ::read(file, text.data(), text.size() - 1);
+  if (file >= 0) ::close(file);
+  std::istringstream fields(size > 0 ? text.data() : "");
+  std::uint64_t pages = 0;
+  for (int field = 0; field < 6; ++field) fields >> pages;
+  return fields ? pages * static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE)) : 0;
+}
+
 void wait_for_signals() {
   const sigset_t set = stop_signals();
   Clock::time_point asked{};
   for (;;) {
-    const timespec slice{0, 100'000'000};
+    const timespec slice{0, 20'000'000};
     if (sigtimedwait(&set, nullptr, &slice) > 0) {
       if (stop) end_now(Code::cancelled);
       stop = true;
       asked = Clock::now();
     }
     const auto now = Clock::now();
+    if (const std::uint64_t most = most_bytes; most > 0 && !stop && data_bytes() > most) {
+      out_of_memory = true;
+      stop = true;
+      asked = now;
+    }
     // OpenCASCADE polls only between faces: the work gets a moment to unwind, then the process goes.
-    if (stop && now - asked > std::chrono::milliseconds(800)) {
-      end_now(Code::cancelled);
+    if (stop && now - asked > std::chrono::milliseconds(600)) {
+      end_now(out_of_memory ? Code::limit_memory : Code::cancelled);
     }
     const std::int64_t limit = deadline_ns;
     if (limit != 0 && now.time_since_epoch().count() > limit) {
@@ -102,6 +126,13 @@ void clean_on_stop(const fs::path& output) {
   const std::lock_guard lock(folders_mutex);
   folders.push_back(output.has_parent_path() ? output.parent_path() : fs::path("."));
 }
+
+void end_beyond(std::uint64_t bytes, std::string text) {
+  most_bytes_text = std::move(text);
+  most_bytes = bytes;
+}
+
+bool memory_ran_out() { return out_of_memory; }
 
 void end_after(double seconds) {
   const auto limit =

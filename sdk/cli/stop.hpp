@@ -3,7 +3,9 @@
 // SIGINT, SIGTERM and SIGHUP ask the work to stop; if it does not within a second, temporary files are removed and the
 // process ends.
 
+#include <cstdint>
 #include <filesystem>
+#include <string>
 
 namespace meso::cli {
 
@@ -15,6 +17,11 @@ void watch_stop_signals();
 /// The process ends by itself, temporary files removed, `seconds` from now at the latest (a grace second later), with
 /// exit code 6.
 void end_after(double seconds);
+
+/// Work beyond this much private memory is asked to stop, as by a signal; then memory_ran_out(), and the exit code
+/// is 6. Allocations that fail would not do: OpenCASCADE takes them for faults of the geometry.
+void end_beyond(std::uint64_t bytes, std::string text);
+[[nodiscard]] bool memory_ran_out();
 
 /// A process that has to end by itself says so in an object on standard output, too.
 void answer_stop_in_json();

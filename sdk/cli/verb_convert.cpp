@@ -33,9 +33,12 @@ void print_summary(const operations::ConvertReport& r, const std::string& out) {
   if (r.cells.placed > 0) {
     fmt::print(stderr, "cells: {} placed, {} kept, {} crossing the boundary", r.cells.placed, r.cells.kept,
                r.cells.crossing);
+    if (r.clip.distinct > 0) fmt::print(stderr, " in {} distinct ways", r.clip.distinct);
     if (r.fragments > 0) fmt::print(stderr, "; {} loose fragments", r.fragments);
+    if (r.dropped_fragments > 0) fmt::print(stderr, "; {} fragments dropped", r.dropped_fragments);
     fmt::print(stderr, "\n");
   }
+  if (r.triangles > 0) fmt::print(stderr, "volume {:.6f} mm3 in the triangles; exact body: ", r.triangles_volume);
   fmt::print(stderr, "volume {:.6f} mm3, area {:.6f} mm2, {}; engine {} ({}), {:.2f} s\n", r.measures.volume,
              r.measures.area, r.closed ? "closed" : "NOT CLOSED", r.engine, r.way, r.seconds.total);
 }
@@ -62,13 +65,18 @@ Json report_json(const operations::ConvertReport& r, const std::string& in, cons
     return j;
   }
   j["cells"] = {{"placed", r.cells.placed}, {"kept", r.cells.kept}, {"crossing", r.cells.crossing}};
+  if (r.clip.distinct > 0)
+    j["boundary"] = {
+        {"distinct", r.clip.distinct}, {"attempts", r.clip.attempts}, {"edgeTolerance", r.clip.edge_tolerance}};
   j["solids"] = r.measures.solids;
   j["faces"] = r.measures.faces;
   j["triangles"] = r.triangles;
   j["volume"] = r.measures.volume;
   j["area"] = r.measures.area;
   j["closed"] = r.closed;
+  if (r.triangles > 0) j["trianglesVolume"] = r.triangles_volume;
   j["fragments"] = r.fragments;
+  if (r.dropped_fragments > 0) j["droppedFragments"] = r.dropped_fragments;
   j["bytes"] = r.bytes;
   j["seconds"] = seconds_json(r.seconds);
   j["peakBytes"] = peak_memory_bytes();
@@ -129,7 +137,7 @@ void add_convert(CLI::App& app, Run& run) {
       "convert", "Realise a document: .step .stp .brep .stl .ply .obj .off .vtk by the output's extension");
   static std::string in, out;
   static ConvertFlags flags;
-  verb->add_option("IN", in, "Document (.meso)")->required();
+  verb->add_option("IN", in, "Document (.meso, .mesoz)")->required();
   verb->add_option("OUT", out, "Output file; replaced atomically")->required();
   verb->add_flag("--ascii", flags.ascii, "Text instead of binary STL");
   verb->add_option("--spacing", flags.spacing, "Implicit engine: distance of samples, e.g. 0.2mm");

@@ -23,6 +23,12 @@ std::optional<picture::Cut> parse_cut(const std::string& text, Run& run) {
   return std::nullopt;
 }
 
+bool is_cut(const TriangleMesh& mesh, const picture::Cut& cut) {
+  Box3 box;
+  for (const Vec3 p : mesh.points) box.extend(p);
+  return box.min[cut.axis] < cut.position && cut.position < box.max[cut.axis];
+}
+
 int render_verb(Run& run, const std::string& in, const std::string& out, const std::string& cut,
                 picture::RenderOptions look) {
   if (!out.ends_with(".png")) run.usage_error("'" + out + "': render writes .png");
@@ -35,6 +41,10 @@ int render_verb(Run& run, const std::string& in, const std::string& out, const s
   clean_on_stop(out);
   const auto mesh = operations::load_mesh(in, *options, run.sink);
   if (!mesh) return run.finish();
+  if (look.cut && !is_cut(*mesh, *look.cut)) {
+    run.usage_error("--cut: the plane " + cut + " does not meet the part");
+    return run.finish();
+  }
   const auto image = picture::draw(*mesh, look, options->run, run.sink);
   if (!image) return run.finish();
   auto file = OutputFile::create(out, run.existing_file(), run.sink);
