@@ -29,13 +29,13 @@ Term least(std::vector<Term> terms) {
   return terms.front();
 }
 
-/// Negative inside the closed polygon: an odd number of sides crosses the ray to the right.
-Term polygon(const std::vector<std::pair<double, double>>& points) {
+/// Negative inside: an odd number of sides crosses the ray to the right.
+Term polygons(std::span<const Side> sides) {
   const Term x = Term::coordinate(0), y = Term::coordinate(1), zero = Term::constant(0), one = Term::constant(1);
   std::vector<Term> squares, crossings;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const auto [ax, ay] = points[i];
-    const auto [bx, by] = points[(i + 1) % points.size()];
+  for (const Side& side : sides) {
+    const auto [ax, ay] = side.from;
+    const auto [bx, by] = side.to;
     const double ex = bx - ax, ey = by - ay, length2 = ex * ex + ey * ey;
     const Term wx = x - ax, wy = y - ay;
     const Term along = Term::apply(Op::clamp, {(ex / length2) * wx + (ey / length2) * wy, zero, one});
@@ -53,20 +53,24 @@ Term polygon(const std::vector<std::pair<double, double>>& points) {
   return Term::apply(Op::select, {odd, -distance, distance});
 }
 
-/// A polygon's distance as a leaf with bounds of its own: a box around it is cut off at no cost.
-Field profile(const std::vector<std::pair<double, double>>& points) { return Field::from_term(polygon(points)); }
-
 }  // namespace
 
-Field extrusion(const eval::ExtrusionShape& shape) {
+Field extrusion(std::span<const Side> sides, double z, double height) {
   Box3 box;
-  for (const auto& [x, y] : shape.points) box.extend({x, y, 0});
-  const Vec3 half{(box.max.x - box.min.x) / 2, (box.max.y - box.min.y) / 2, shape.height / 2};
-  const Vec3 middle{box.min.x + half.x, box.min.y + half.y, shape.z + half.z};
-  const Field slab =
-      intersection_of(Field::half_space({0, 0, 1}, shape.z + shape.height), Field::half_space({0, 0, -1}, -shape.z));
+  for (const Side& side : sides) box.extend({side.from.first, side.from.second, 0});
+  const Vec3 half{(box.max.x - box.min.x) / 2, (box.max.y - box.min.y) / 2, height / 2};
+  const Vec3 middle{box.min.x + half.x, box.min.y + half.y, z + half.z};
+  const Field profile = Field::from_term(polygons(sides));
+  const Field slab = intersection_of(Field::half_space({0, 0, 1}, z + height), Field::half_space({0, 0, -1}, -z));
   // The box holds the body and changes nothing but bounds().
-  return intersection_of(intersection_of(profile(shape.points), slab), Field::box(half).translated(middle));
+  return intersection_of(intersection_of(profile, slab), Field::box(half).translated(middle));
+}
+
+Field extrusion(const eval::ExtrusionShape& shape) {
+  std::vector<Side> sides;
+  for (std::size_t i = 0; i < shape.points.size(); ++i)
+    sides.push_back({shape.points[i], shape.points[(i + 1) % shape.points.size()]});
+  return extrusion(sides, shape.z, shape.height);
 }
 
 }  // namespace meso::implicit

@@ -1,13 +1,24 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// The distance to an extruded polygon. Private.
+// The distance to an extruded profile. Private.
+
+#include <span>
+#include <utility>
 
 #include "meso/eval/shape.hpp"
 #include "meso/implicit/field.hpp"
 
 namespace meso::implicit {
 
-/// Exact in the plane of the profile and along z.
+using Point2 = std::pair<double, double>;
+struct Side {
+  Point2 from, to;
+  friend auto operator<=>(const Side&, const Side&) = default;
+};
+
+/// Of the closed polygons, in any order, that `sides` make up: inside is what an odd number of them is around. Exact in
+/// the plane of the profile and along z.
+[[nodiscard]] Field extrusion(std::span<const Side> sides, double z, double height);
 [[nodiscard]] Field extrusion(const eval::ExtrusionShape& shape);
 
 }  // namespace meso::implicit

@@ -7,6 +7,7 @@
 #include "far_from_mesh.hpp"
 #include "meso/mesh_distance/mesh_field.hpp"
 #include "polygon_term.hpp"
+#include "prism.hpp"
 #include "volume_element.hpp"
 
 namespace meso::implicit {
@@ -68,10 +69,10 @@ struct ShapeFields::Maker {
     return field;
   }
   Result operator()(const eval::ImportShape& s) const {
-    const auto mesh = self.import(s);
-    if (!mesh) return std::nullopt;
+    const auto field = self.import(s);
+    if (!field) return std::nullopt;
     const double k = s.scale;
-    return moved(Field::external(mesh), s.transform * Affine{Mat3::from_columns({k, 0, 0}, {0, k, 0}, {0, 0, k}), {}});
+    return moved(*field, s.transform * Affine{Mat3::from_columns({k, 0, 0}, {0, k, 0}, {0, 0, k}), {}});
   }
   Result operator()(const eval::BooleanShape& s) const {
     std::optional<Field> result;
@@ -98,14 +99,30 @@ std::optional<Field> ShapeFields::make(const eval::Shape& shape) {
   return std::visit(Maker{*this, shape.source}, shape.value);
 }
 
-std::shared_ptr<const ExternalField> ShapeFields::import(const eval::ImportShape& shape) {
-  if (const auto known = imports_.find(shape.file); known != imports_.end()) return known->second;
-  std::shared_ptr<const ExternalField> field;
+namespace {
+
+/// A prism's distance is a table; that to other meshes is searched for.
+std::optional<Field> field_of(const TriangleMesh& mesh, const std::string& name, const RunOptions& run,
+                              DiagnosticSink& sink) {
+  const auto distance = MeshField::make(mesh, name, run, sink);
+  if (!distance) return std::nullopt;
+  const MeshQuality& found = distance->quality();
+  const bool as_it_stands = found.closed && !found.inside_out &&
+                            found.degenerate + found.cancelled + found.repeated + found.turned + found.buried == 0;
+  if (as_it_stands)
+    if (auto prism = prism_field(mesh)) return prism;
+  if (distance->lipschitz() > 1) return Field::external(distance);
+  return Field::external(std::make_shared<const FarFromMesh>(distance));
+}
+
+}  // namespace
+
+std::optional<Field> ShapeFields::import(const eval::ImportShape& shape) {
+  if (const auto known = imports_.find(shape.file.name()); known != imports_.end()) return known->second;
+  std::optional<Field> field;
   if (const auto mesh = options_.imports ? options_.imports(shape, report_.sink()) : std::nullopt)
-    field = MeshField::make(*mesh, shape.file.string(), options_.run, report_.sink());
-  if (field && field->lipschitz() <= 1) field = std::make_shared<const FarFromMesh>(field);
-  imports_.emplace(shape.file, field);
-  return field;
+    field = field_of(*mesh, shape.file.name().string(), options_.run, report_.sink());
+  return imports_.emplace(shape.file.name(), field).first->second;
 }
 
 }  // namespace meso::implicit

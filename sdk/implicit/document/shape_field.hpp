@@ -44,12 +44,12 @@ class ShapeFields {
  private:
   struct Maker;
   void see(double feature) { smallest_ = std::fmin(smallest_, feature); }
-  [[nodiscard]] std::shared_ptr<const ExternalField> import(const eval::ImportShape& shape);
+  [[nodiscard]] std::optional<Field> import(const eval::ImportShape& shape);
 
   const Reporter& report_;
   const DocumentFieldOptions& options_;
   PartMaker make_part_;
-  std::map<std::filesystem::path, std::shared_ptr<const ExternalField>> imports_;
+  std::map<std::filesystem::path, std::optional<Field>> imports_;
   double smallest_ = HUGE_VAL;
 };
 
