@@ -172,6 +172,43 @@ TEST_F(ImportSolids, SolidsThatOverlapAreUnited) {
   EXPECT_NEAR(volume, 1500, 1e-6);
 }
 
+TEST_F(ImportSolids, CavitiesOfStlAreVoids) {
+  // A cube of edge 10 with a cube of edge 4 taken out of its middle, and that of edge 1 standing in the cavity.
+  const std::string one = cube_stl();
+  const auto scaled = [&](double edge, double corner, bool inside_out) {
+    std::string out;
+    std::istringstream lines(one);
+    std::string line, held;
+    for (int vertex = 0; std::getline(lines, line);) {
+      const auto at = line.find("vertex ");
+      if (at == std::string::npos) {
+        vertex = 0;
+        out += line + '\n';
+        continue;
+      }
+      std::istringstream numbers(line.substr(at + 7));
+      double x = 0, y = 0, z = 0;
+      numbers >> x >> y >> z;
+      const auto put = [&](double c) { return std::to_string(corner + c / 10 * edge) + ' '; };
+      const std::string text = "vertex " + put(x) + put(y) + put(z) + '\n';
+      if (inside_out && ++vertex == 2)
+        held = text;
+      else
+        out += text + (inside_out && vertex == 3 ? held : "");
+    }
+    return out;
+  };
+  const auto hollow = imported({.file = written("hollow.stl", one + scaled(4, 3, true))});
+  ASSERT_TRUE(hollow);
+  ASSERT_EQ(hollow->size(), 1u);
+  EXPECT_NEAR(volume_of(hollow->front()), 1000 - 64, 1e-6);
+  const auto nested = imported({.file = written("nested.stl", scaled(1, 4, false) + scaled(4, 3, true) + one)});
+  ASSERT_TRUE(nested);
+  ASSERT_EQ(nested->size(), 2u);
+  EXPECT_NEAR(volume_of(nested->front()) + volume_of(nested->back()), 1000 - 64 + 1, 1e-6);
+  expect_refused(written("inside_out.stl", scaled(4, 3, true)), Code::import_not_closed);
+}
+
 TEST_F(ImportSolids, NumbersThatAreNone) {
   EXPECT_TRUE(has_bad_number("#1=CARTESIAN_POINT('',(0.,nan,1.));"));
   EXPECT_TRUE(has_bad_number("#1=CARTESIAN_POINT('',(0.,-INF,1.));"));

@@ -2,10 +2,12 @@
 #include "import_stl.hpp"
 
 #include <BRepBuilderAPI_MakeVertex.hxx>
+#include <algorithm>
 #include <map>
 #include <numeric>
 
 #include "boolean.hpp"
+#include "facet_tree.hpp"
 #include "meso/import_surface_mesh/read_stl.hpp"
 
 namespace meso::brep {
@@ -62,12 +64,46 @@ std::vector<std::size_t> surfaces_of(const TriangleMesh& mesh, std::size_t& coun
   return surfaces;
 }
 
-TopoDS_Solid solid_of(const TopoDS_Shell& shell) {
-  TopoDS_Solid solid;
+double volume_of(const std::vector<Triangle>& triangles) {
+  double volume = 0;
+  for (const Triangle& t : triangles) volume += dot(t[0] - triangles[0][0], cross(t[1] - t[0], t[2] - t[0])) / 6;
+  return volume;
+}
+
+/// Each surface is a solid, or, if it is inside out, a cavity of the smallest solid around it.
+Solids solids_of_surfaces(const std::vector<TopoDS_Shell>& shells, std::vector<std::vector<Triangle>> triangles) {
   const BRep_Builder builder;
-  builder.MakeSolid(solid);
-  builder.Add(solid, shell);
-  return solid;
+  std::vector<double> volumes;
+  for (const auto& surface : triangles) volumes.push_back(volume_of(surface));
+  std::vector<std::size_t> owners(shells.size());
+  std::iota(owners.begin(), owners.end(), std::size_t{0});
+  if (std::ranges::any_of(volumes, [](double v) { return v < 0; })) {
+    std::vector<std::size_t> solids;
+    std::vector<FacetTree> trees;
+    for (std::size_t s = 0; s < shells.size(); ++s) {
+      if (volumes[s] < 0) continue;
+      solids.push_back(s);
+      trees.emplace_back(std::move(triangles[s]));
+    }
+    for (std::size_t s = 0; s < shells.size(); ++s) {
+      double smallest = HUGE_VAL;
+      for (std::size_t k = 0; volumes[s] < 0 && k < solids.size(); ++k)
+        if (volumes[solids[k]] < smallest && trees[k].contains(triangles[s][0][0])) {
+          owners[s] = solids[k];
+          smallest = volumes[solids[k]];
+        }
+    }
+  }
+  std::vector<TopoDS_Solid> made(shells.size());
+  for (std::size_t s = 0; s < shells.size(); ++s) {
+    TopoDS_Solid& solid = made[owners[s]];
+    if (solid.IsNull()) builder.MakeSolid(solid);
+    builder.Add(solid, shells[s]);
+  }
+  Solids out;
+  for (const TopoDS_Solid& solid : made)
+    if (!solid.IsNull()) out.push_back(solid);
+  return out;
 }
 
 }  // namespace
@@ -86,23 +122,21 @@ std::optional<Solids> read_stl_solids(const Resource& file, ElementId where, con
   const std::vector<std::size_t> surfaces = surfaces_of(*mesh, count);
   const BRep_Builder builder;
   std::vector<TopoDS_Shell> shells(count);
+  std::vector<std::vector<Triangle>> triangles(count);
   for (TopoDS_Shell& shell : shells) builder.MakeShell(shell);
   Facets facets(*mesh);
   for (std::size_t i = 0; i < mesh->triangles.size(); ++i) {
     const TopoDS_Face face = facets.face(mesh->triangles[i]);
     if (face.IsNull()) {
-      context.report(Code::import_not_closed, where,
-                     {name, "triangle " + std::to_string(i + 1) + " has no area"});
+      context.report(Code::import_not_closed, where, {name, "triangle " + std::to_string(i + 1) + " has no area"});
       return {};
     }
     builder.Add(shells[surfaces[i]], face);
+    const auto& [a, b, c] = mesh->triangles[i];
+    triangles[surfaces[i]].push_back({mesh->points[a], mesh->points[b], mesh->points[c]});
   }
-  Solids solids;
-  for (TopoDS_Shell& shell : shells) {
-    shell.Closed(true);
-    solids.push_back(solid_of(shell));
-  }
-  return solids;
+  for (TopoDS_Shell& shell : shells) shell.Closed(true);
+  return solids_of_surfaces(shells, std::move(triangles));
 }
 
 }  // namespace meso::brep

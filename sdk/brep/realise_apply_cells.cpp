@@ -3,6 +3,7 @@
 // booleans where they do not.
 #include <algorithm>
 #include <cstdint>
+#include <functional>
 #include <map>
 
 #include "boolean.hpp"
@@ -31,6 +32,12 @@ double area_of(const Solids& solids) {
     area += properties.Mass();
   }
   return area;
+}
+
+bool stopped(const FoldContext& context) {
+  if (!context.solid.run.should_stop()) return false;
+  context.solid.report(context.solid.run.out_of_time() ? Code::limit_time : Code::cancelled, context.where(), {});
+  return true;
 }
 
 /// A solid and further voids in it.
@@ -77,12 +84,12 @@ class CellStep {
   }
 
   bool sort() {
-    const Clusters clusters = clusters_of(cells_);
+    const Clusters clusters = clusters_of(cells_, taken_);
     const bool is_union = operation() == ApplyOperation::union_;
     if (!can_be_joined(clusters, is_union)) return false;
     for (std::size_t i = 0; i < cells_.cells.size(); ++i) {
       if (!taken_[i]) continue;
-      if (i % 64 == 0 && stopped()) return false;
+      if (i % 64 == 0 && stopped(context_)) return false;
       const CellSolid& cell = cells_.cells[i];
       const bool apart = clusters.is_alone(i) && cells_.prototypes[cell.prototype].is_simple;
       if (apart && operation() == ApplyOperation::difference && drill_.add(cells_, cell)) {
@@ -139,12 +146,6 @@ class CellStep {
     return context_.within_budget(most);
   }
 
-  bool stopped() const {
-    if (!context_.solid.run.should_stop()) return false;
-    context_.solid.report(context_.solid.run.out_of_time() ? Code::limit_time : Code::cancelled, context_.where(), {});
-    return true;
-  }
-
   /// Each prototype integrated once.
   [[nodiscard]] double volume_of_cells(const std::vector<std::size_t>& which) const {
     std::vector<std::size_t> uses(cells_.prototypes.size(), 0);
@@ -168,31 +169,33 @@ class CellStep {
     if (!drilled_.empty() && !drill_into(step)) return {};
     if (apart_inside_.empty() && enclosed_.empty()) return step;
     std::vector<std::vector<TopoDS_Shape>> voids(step.solids.size());
-    const Boundary owners(step.solids);
+    std::optional<Boundary> owners;
+    if (step.solids.size() > 1) owners.emplace(step.solids);
+    const auto owner_at = [&](Vec3 p) { return owners ? owners->solid_at(p) : 0; };
     for (const std::size_t i : apart_inside_) {
       const Solids hollows = cells_.solids_of(cells_.cells[i]);
       const std::vector<Vec3> anchors = cells_.anchors_of(cells_.cells[i]);
       for (std::size_t k = 0; k < hollows.size(); ++k) {
-        const int owner = step.solids.size() == 1 ? 0 : owners.solid_at(anchors[k]);
+        const int owner = owner_at(anchors[k]);
         if (owner >= 0) voids[static_cast<std::size_t>(owner)].push_back(hollows[k]);
         // Otherwise it lies in what another cutter has taken away: cannot be, the two would touch.
       }
     }
-    if (!hollow_out_clusters(step.solids, owners, voids)) return {};
+    if (!hollow_out_clusters(step.solids, owner_at, voids)) return {};
     for (std::size_t s = 0; s < voids.size(); ++s)
       if (!voids[s].empty()) step.solids[s] = with_voids(step.solids[s], voids[s]);
     return step;
   }
 
   /// Clusters of cutters, fused, become voids; what such a cluster encloses stays, as a solid of its own.
-  bool hollow_out_clusters(Solids& solids, const Boundary& owners, std::vector<std::vector<TopoDS_Shape>>& voids) {
-    const bool is_one = solids.size() == 1;
+  bool hollow_out_clusters(Solids& solids, const std::function<int(Vec3)>& owner_at,
+                           std::vector<std::vector<TopoDS_Shape>>& voids) {
     for (const std::vector<std::size_t>& cluster : enclosed_) {
-      if (stopped()) return false;
+      if (stopped(context_)) return false;
       const CellSolid& first = cells_.cells[cluster.front()];
       const auto fused = fused_in_frame_of(first, cluster);
       if (!fused) return false;
-      const int owner = is_one ? 0 : owners.solid_at(cells_.anchors_of(first).front());
+      const int owner = owner_at(cells_.anchors_of(first).front());
       if (owner < 0) continue;
       for (const TopoDS_Shape& solid : *fused)
         for (TopExp_Explorer it(mapped(solid, first.placement), TopAbs_SHELL); it.More(); it.Next()) {
@@ -300,13 +303,18 @@ std::optional<std::vector<bool>> taken_cells(const Solids& body, const CellSolid
   const Boundary boundary(body);
   std::size_t booleans = 0;
   for (std::size_t i = 0; i < judged.cells.size(); ++i) {
+    if (i % 64 == 0 && stopped(context)) return {};
     const Place place = boundary.place(judged, judged.cells[i]);
     if (place != Place::crossing) {
       taken[i] = place == Place::inside;
       const bool far = rule == BoundaryRule::keep_whole || context.clearance <= clear_distance || !taken[i];
-      if (!far) taken[i] = boundary.distance(judged.solids_of(judged.cells[i])) >= context.clearance - rule_tolerance;
+      if (!far) taken[i] = boundary.is_clear_by(context.clearance - rule_tolerance, judged, judged.cells[i]);
       continue;
     }
+    // What crosses is nearer than any clearance, or a corner says that it is not inside.
+    taken[i] = rule == BoundaryRule::keep_whole || (context.clearance <= clear_distance + rule_tolerance &&
+                                                    !boundary.sticks_out(rule_tolerance, judged, judged.cells[i]));
+    if (!taken[i]) continue;
     if (!context.within_budget(++booleans)) return {};
     const Solids solids = judged.solids_of(judged.cells[i]);
     const auto part_inside = common(solids, body, context.where(), context.solid);

@@ -219,6 +219,15 @@ class Collector {
 
 }  // namespace
 
+const FacetTree* Prototype::facets() const {
+  if (!facets_) {
+    auto triangles = solids.empty() ? std::nullopt : facets_of(solids);
+    facets_.emplace();
+    if (triangles) facets_->emplace(std::move(*triangles));
+  }
+  return *facets_ ? &**facets_ : nullptr;
+}
+
 Solids CellSolids::solids_of(const CellSolid& cell) const {
   Solids placed;
   for (const TopoDS_Shape& solid : prototypes[cell.prototype].solids) placed.push_back(mapped(solid, cell.placement));

@@ -5,6 +5,7 @@
 #include <optional>
 #include <span>
 
+#include "facet_tree.hpp"
 #include "meso/eval/evaluation.hpp"
 #include "realise_clearance.hpp"
 
@@ -25,10 +26,13 @@ struct Prototype {
     if (!mesh_) mesh_ = coarse_mesh(solids);
     return *mesh_;
   }
+  /// Null unless all faces are plane between straight lines. Made when first asked for.
+  [[nodiscard]] const FacetTree* facets() const;
   [[nodiscard]] bool is_enclosed_by_one_surface() const { return surfaces.size() == 1 && surfaces.front().is_closed(); }
 
  private:
   mutable std::optional<CoarseMesh> mesh_;
+  mutable std::optional<std::optional<FacetTree>> facets_;
 };
 
 struct CellSolid {

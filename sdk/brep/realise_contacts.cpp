@@ -40,6 +40,9 @@ class Neighbours {
  private:
   bool decide(const CellSolid& cell_a, const CellSolid& cell_b, const Affine& a_from_b) {
     const Prototype &a = cells_.prototypes[cell_a.prototype], &b = cells_.prototypes[cell_b.prototype];
+    if (const FacetTree* facets = a.facets(); facets != nullptr && b.facets() != nullptr)
+      return facets->is_within(clear_distance, *b.facets(), a_from_b) || holds_a_solid(a, b, a_from_b) ||
+             holds_a_solid(b, a, inverse_of_rigid(a_from_b));
     if (holds_a_solid(a, b, a_from_b) || holds_a_solid(b, a, inverse_of_rigid(a_from_b))) return true;
     if (mutually_apart(a, a.mesh(), b, b.mesh(), a_from_b)) return false;
     if (proven_to_touch(a, b.mesh(), a_from_b) || proven_to_touch(b, a.mesh(), inverse_of_rigid(a_from_b))) return true;
@@ -69,6 +72,7 @@ class Neighbours {
       const Vec3 p = a_from_b * anchor;
       if (!a.box.intersects({p, p})) return false;
       if (a.is_enclosed_by_one_surface()) return a.surfaces.front().signed_distance(p) < 0;
+      if (a.facets() != nullptr) return a.facets()->contains(p);
       return std::ranges::any_of(a.solids, [&](const TopoDS_Shape& solid) {
         BRepClass3d_SolidClassifier classifier(solid, to_pnt(p), clear_distance);
         return classifier.State() == TopAbs_IN;
@@ -103,7 +107,7 @@ class Neighbours {
 
 }  // namespace
 
-Clusters clusters_of(const CellSolids& cells) {
+Clusters clusters_of(const CellSolids& cells, const std::vector<bool>& taken) {
   Clusters out;
   out.of_cell.resize(cells.cells.size());
   std::iota(out.of_cell.begin(), out.of_cell.end(), 0);
@@ -114,7 +118,10 @@ Clusters clusters_of(const CellSolids& cells) {
   };
   std::vector<Box3> boxes;
   boxes.reserve(cells.cells.size());
-  for (const CellSolid& cell : cells.cells) boxes.push_back(cell.box.empty() ? cell.box : grown(cell.box));
+  for (std::size_t i = 0; i < cells.cells.size(); ++i) {
+    const Box3& box = cells.cells[i].box;
+    boxes.push_back(!taken[i] || box.empty() ? Box3{} : grown(box));
+  }
   Neighbours neighbours(cells);
   visit_meeting_pairs(boxes, [&](std::size_t i, std::size_t k) {
     const std::uint32_t a = root_of(i), b = root_of(k);

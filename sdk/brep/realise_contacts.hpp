@@ -17,8 +17,8 @@ struct Clusters {
   [[nodiscard]] bool is_alone(std::size_t cell) const { return sizes[of_cell[cell]] == 1; }
 };
 
-/// Bodies closer than clear_distance touch. Pairs are found by a grid of boxes; each way in which two cells can stand
-/// to each other is decided once. May throw Standard_Failure.
-[[nodiscard]] Clusters clusters_of(const CellSolids& cells);
+/// Of the cells that are `taken`. Bodies closer than clear_distance touch. Pairs are found by a grid of boxes; each way
+/// in which two cells can stand to each other is decided once. May throw Standard_Failure.
+[[nodiscard]] Clusters clusters_of(const CellSolids& cells, const std::vector<bool>& taken);
 
 }  // namespace meso::brep
