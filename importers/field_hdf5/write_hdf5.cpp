@@ -27,11 +27,13 @@ bool write_texts(hid_t object, const char* attribute, const std::vector<std::str
 }
 
 bool write(const fields::Table& table, const std::string& file) {
-  // No times of creation: equal tables give equal bytes.
   const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose), creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
   H5Pset_libver_bounds(access.id(), H5F_LIBVER_V18, H5F_LIBVER_LATEST);
+  // No times of creation, neither of the data set nor of the root group: equal tables give equal bytes.
+  const Handle root(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
   H5Pset_obj_track_times(creation.id(), false);
-  const Handle out(H5Fcreate(file.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.id()), H5Fclose);
+  H5Pset_obj_track_times(root.id(), false);
+  const Handle out(H5Fcreate(file.c_str(), H5F_ACC_TRUNC, root.id(), access.id()), H5Fclose);
   if (!out) return false;
   const hsize_t size[]{table.records.rows(), table.records.columns()};
   const Handle space(H5Screate_simple(2, size, nullptr), H5Sclose);
