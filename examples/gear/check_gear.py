@@ -6,7 +6,7 @@ usage: check_gear.py MESO [--part]
 
 Judged by nobody else's word: which records are holes (sorting, thinning, stress, distance from the true involute outline) and how large they
 are; values between the records at 1000 random places, by both methods that a cloud of points allows; with --part the volume of the exact part
-(its STEP, read again) against that of the body less the cylinders. Exit code 77 if numpy or h5py are missing.
+(its STEP, read again) against that of the body less the cylinders, and the STEP of gear-thinned.meso. Exit code 77 if numpy or h5py are missing.
 """
 
 import csv
@@ -144,6 +144,10 @@ def check_part(program, folder, radius):
     expected = body - np.pi * gear.WIDTH * np.sum(radius**2)
     worst = abs(part / expected - 1)
     expect(f"gear.step ({body:.6f} mm3) less {len(radius)} cylinders = {expected:.6f} mm3, to {worst:.1e}", worst <= 1e-9 and made["solids"] == 1)
+    (folder / "thinned").mkdir()
+    meso(program, "convert", HERE / "gear-thinned.meso", folder / "thinned" / "part.step")
+    same = (folder / "part.step").read_bytes() == (folder / "thinned" / "part.step").read_bytes()
+    expect("gear-thinned.meso makes the same bytes of STEP", same)
     expect("gear.step is the true involute gear, to 1e-5", abs(body / gear.volume() - 1) <= 1e-5)
 
 
