@@ -136,11 +136,10 @@ bool share_a_point(const std::array<std::uint32_t, 3>& a, const std::array<std::
   return std::any_of(a.begin(), a.end(), [&](std::uint32_t p) { return std::find(b.begin(), b.end(), p) != b.end(); });
 }
 
-}  // namespace
-
-SelfContacts count_self_contacts(const TriangleMesh& mesh, std::uint64_t limit) {
-  SelfContacts out;
-  if (mesh.triangles.empty()) return out;
+/// visit(i, j, corner of their common box) for each pair, until it returns false.
+template <class Visit>
+void visit_pairs(const TriangleMesh& mesh, Visit visit) {
+  if (mesh.triangles.empty()) return;
   const Grid grid(mesh);
   for (std::size_t b = 0; b < grid.buckets(); ++b) {
     const auto [first, last] = grid.bucket(b);
@@ -156,11 +155,31 @@ SelfContacts count_self_contacts(const TriangleMesh& mesh, std::uint64_t limit) 
         const Vec3 corner{std::max(box.min.x, other.min.x), std::max(box.min.y, other.min.y),
                           std::max(box.min.z, other.min.z)};
         if (grid.bucket_of(corner) != b || !triangles_meet(s, t)) continue;
-        if (out.pairs == 0) out.first_place = corner;
-        if (++out.pairs >= limit) return out;
+        if (!visit(*i, *j, corner)) return;
       }
     }
   }
+}
+
+}  // namespace
+
+SelfContacts count_self_contacts(const TriangleMesh& mesh, std::uint64_t limit) {
+  SelfContacts out;
+  visit_pairs(mesh, [&](std::uint32_t, std::uint32_t, Vec3 corner) {
+    if (out.pairs == 0) out.first_place = corner;
+    return ++out.pairs < limit;
+  });
+  return out;
+}
+
+std::vector<std::uint32_t> triangles_in_contact(const TriangleMesh& mesh) {
+  std::vector<std::uint32_t> out;
+  visit_pairs(mesh, [&](std::uint32_t i, std::uint32_t j, Vec3) {
+    out.insert(out.end(), {i, j});
+    return true;
+  });
+  std::sort(out.begin(), out.end());
+  out.erase(std::unique(out.begin(), out.end()), out.end());
   return out;
 }
 

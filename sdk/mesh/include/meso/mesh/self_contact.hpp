@@ -12,6 +12,7 @@
 #include <cstdint>
 #include <limits>
 #include <optional>
+#include <vector>
 
 #include "meso/base/triangle_mesh.hpp"
 
@@ -24,5 +25,8 @@ struct SelfContacts {
 
 [[nodiscard]] SelfContacts count_self_contacts(const TriangleMesh& mesh,
                                                std::uint64_t limit = std::numeric_limits<std::uint64_t>::max());
+
+/// The triangles of all pairs, ascending.
+[[nodiscard]] std::vector<std::uint32_t> triangles_in_contact(const TriangleMesh& mesh);
 
 }  // namespace meso

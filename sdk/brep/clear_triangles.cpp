@@ -1,0 +1,273 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "meso/brep/clear_triangles.hpp"
+
+#include <algorithm>
+#include <map>
+#include <set>
+#include <tuple>
+#include <unordered_map>
+
+#include "box_pairs.hpp"
+#include "meso/brep/instance_map.hpp"
+#include "meso/brep/placement.hpp"
+#include "meso/mesh/self_contact.hpp"
+#include "surface_point.hpp"
+
+namespace meso::brep {
+namespace {
+
+constexpr int most_passes = 24;       ///< each halves segments that are still too long
+constexpr double straight_mm = 1e-9;  ///< a chord that is off by less is not worth a point
+
+/// A segment modulo lattice translation: both ends, the second counted from the cell of the first.
+struct SegmentName {
+  Vec3 a, b;
+  Index3 offset{};  ///< of b
+
+  friend bool operator==(const SegmentName& s, const SegmentName& t) {
+    return s.a == t.a && s.b == t.b && s.offset == t.offset;
+  }
+};
+struct SegmentHash {
+  std::size_t operator()(const SegmentName& s) const {
+    std::uint64_t h = 0;
+    for (const double c : {s.a.x, s.a.y, s.a.z, s.b.x, s.b.y, s.b.z})
+      h = std::rotl((h ^ std::bit_cast<std::uint64_t>(c + 0.0)) * 0x9e3779b97f4a7c15u, 29);
+    return h;
+  }
+};
+
+struct NamedSegment {
+  SegmentName name;
+  Index3 cell{};  ///< of the first end, from that of the face
+};
+
+NamedSegment named(const MeshPoint* a, const MeshPoint* b) {
+  const auto key = [](const MeshPoint& p) { return std::tie(p.point.x, p.point.y, p.point.z, p.offset); };
+  if (key(*b) < key(*a)) std::swap(a, b);
+  Index3 offset{};
+  for (std::size_t i = 0; i < 3; ++i) offset[i] = b->offset[i] - a->offset[i];
+  return {{a->point, b->point, offset}, a->offset};
+}
+
+NamedSegment segment_of(const Triangulation& mesh, std::size_t triangle, std::size_t k) {
+  const auto& t = mesh.triangles[triangle];
+  return named(&mesh.points[t[k]], &mesh.points[t[(k + 1) % 3]]);
+}
+
+/// The surfaces that a segment runs between, and how far its middle is from them.
+struct Halving {
+  std::vector<std::pair<const Surface*, Vec3>> surfaces;  ///< and where the segment's frame stands in the surface's
+  Vec3 point;
+  double off = 0;
+};
+using Halvings = std::unordered_map<SegmentName, Halving, SegmentHash>;
+
+/// Where the surfaces meet, by projecting onto one after the other.
+void find_point(const SegmentName& name, const Template& geometry, Halving& halving) {
+  const Vec3 b = name.b + cell_origin(geometry, name.offset);
+  const Vec3 middle = 0.5 * (name.a + b);
+  Vec3 p = middle;
+  for (int round = 0; round < 200; ++round) {
+    const Vec3 before = p;
+    for (const auto& [surface, shift] : halving.surfaces) p = nearest_point(*surface, p + shift) - shift;
+    if (norm(p - before) < 1e-13) break;
+  }
+  halving.point = p;
+  halving.off = norm(p - middle);
+  if (!(halving.off < 0.5 * norm(b - name.a))) halving.off = 0;  // another branch
+}
+
+struct Placed {
+  const Shell* shell = nullptr;
+  FaceInstance instance;
+};
+
+Box3 box_of(const Placed& placed) {
+  const Template& geometry = *placed.shell->geometry;
+  const Vec3 origin = cell_origin(geometry, placed.instance.cell);
+  Box3 box;
+  for (const MeshPoint& p : geometry.faces[placed.instance.face].mesh.points)
+    box.extend(placed.shell->placement * (p.point + origin + cell_origin(geometry, p.offset)));
+  return box;
+}
+
+template <typename Visit>
+void visit_shells(Body& body, Visit visit) {
+  for (Solid& solid : body.solids) {
+    visit(solid.outer);
+    for (Shell& hollow : solid.voids) visit(hollow);
+  }
+}
+
+/// One instance of each face of each template, and all instances that come near one of those.
+std::vector<Placed> looked_at(Body& body) {
+  constexpr std::int32_t reach = 2;  // cells
+  std::vector<Placed> first, others, out;
+  std::map<const Template*, std::vector<bool>> seen;
+  std::map<const Template*, std::set<Index3>> near;
+  visit_shells(body, [&](const Shell& shell) {
+    std::vector<bool>& faces = seen[shell.geometry.get()];
+    std::set<Index3>& cells = near[shell.geometry.get()];
+    faces.resize(shell.geometry->faces.size());
+    shell.visit([&](const FaceInstance& instance) {
+      if (faces[instance.face]) return;
+      faces[instance.face] = true;
+      first.push_back({&shell, instance});
+      const Index3 c = instance.cell;
+      if (cells.contains(c)) return;
+      for (std::int32_t i = -reach; i <= reach; ++i)
+        for (std::int32_t j = -reach; j <= reach; ++j)
+          for (std::int32_t k = -reach; k <= reach; ++k) cells.insert(c + Index3{i, j, k});
+    });
+  });
+  std::map<const Template*, std::vector<bool>> taken;
+  visit_shells(body, [&](const Shell& shell) {
+    std::vector<bool>& faces = taken[shell.geometry.get()];
+    faces.resize(shell.geometry->faces.size());
+    const std::set<Index3>& cells = near[shell.geometry.get()];
+    shell.visit([&](const FaceInstance& instance) {
+      if (!faces[instance.face])
+        faces[instance.face] = true;  // the one in `first`
+      else if (cells.contains(instance.cell))
+        others.push_back({&shell, instance});
+    });
+  });
+  std::vector<Box3> boxes;
+  for (const Placed& placed : first) boxes.push_back(box_of(placed));
+  for (const Placed& placed : others) boxes.push_back(box_of(placed));
+  std::vector<bool> meets(boxes.size());
+  visit_meeting_pairs(boxes, [&](std::size_t i, std::size_t k) {
+    if (i < first.size()) meets[k] = true;
+  });
+  out = first;
+  for (std::size_t i = 0; i < others.size(); ++i)
+    if (meets[first.size() + i]) out.push_back(others[i]);
+  return out;
+}
+
+/// Triangles of templates, each once: (face, triangle).
+using Chosen = std::map<const Template*, std::set<std::pair<std::uint32_t, std::uint32_t>>>;
+
+/// Of the body as an STL file has it.
+Chosen chosen_triangles(const std::vector<Placed>& placed) {
+  using Float3 = std::array<float, 3>;
+  struct Hash {
+    std::size_t operator()(const Float3& p) const {
+      std::uint64_t h = 0;
+      for (const float c : p) h = std::rotl((h ^ std::bit_cast<std::uint32_t>(c)) * 0x9e3779b97f4a7c15u, 29);
+      return h;
+    }
+  };
+  struct Origin {
+    std::size_t placed;
+    std::uint32_t triangle;
+  };
+  TriangleMesh mesh;
+  std::vector<Origin> origins;
+  std::unordered_map<Float3, std::uint32_t, Hash> numbers;
+  std::vector<std::uint32_t> local;
+  for (std::size_t i = 0; i < placed.size(); ++i) {
+    const Template& geometry = *placed[i].shell->geometry;
+    const FaceInstance& instance = placed[i].instance;
+    const Triangulation& face = geometry.faces[instance.face].mesh;
+    local.clear();
+    for (const MeshPoint& p : face.points) {
+      const Vec3 at = placed[i].shell->placement * (p.point + cell_origin(geometry, instance.cell + p.offset));
+      const Float3 rounded{static_cast<float>(at.x) + 0.0F, static_cast<float>(at.y) + 0.0F,
+                           static_cast<float>(at.z) + 0.0F};
+      const auto [number, fresh] = numbers.try_emplace(rounded, static_cast<std::uint32_t>(mesh.points.size()));
+      if (fresh) mesh.points.push_back({rounded[0], rounded[1], rounded[2]});
+      local.push_back(number->second);
+    }
+    for (std::uint32_t t = 0; t < face.triangles.size(); ++t) {
+      const auto& [a, b, c] = face.triangles[t];
+      if (local[a] == local[b] || local[b] == local[c] || local[c] == local[a]) continue;
+      mesh.triangles.push_back({local[a], local[b], local[c]});
+      origins.push_back({i, t});
+    }
+  }
+  Chosen chosen;
+  for (const std::uint32_t t : triangles_in_contact(mesh)) {
+    const Placed& where = placed[origins[t].placed];
+    chosen[where.shell->geometry.get()].insert({where.instance.face, origins[t].triangle});
+  }
+  return chosen;
+}
+
+/// What halving the segments of the chosen triangles would do; only the worst of each triangle is kept.
+Halvings halvings_of(const Template& geometry, const Chosen::mapped_type& chosen) {
+  Halvings all;
+  for (const auto& [face, triangle] : chosen)
+    for (std::size_t k = 0; k < 3; ++k) all.try_emplace(segment_of(geometry.faces[face].mesh, triangle, k).name);
+  for (const FaceTemplate& face : geometry.faces)
+    for (std::size_t t = 0; t < face.mesh.triangles.size(); ++t)
+      for (std::size_t k = 0; k < 3; ++k) {
+        const NamedSegment segment = segment_of(face.mesh, t, k);
+        const auto found = all.find(segment.name);
+        if (found == all.end()) continue;
+        const std::pair<const Surface*, Vec3> use{&face.surface, cell_origin(geometry, segment.cell)};
+        auto& surfaces = found->second.surfaces;
+        if (std::ranges::find(surfaces, use) == surfaces.end()) surfaces.push_back(use);
+      }
+  for (auto& [name, halving] : all) find_point(name, geometry, halving);
+  Halvings worst;
+  for (const auto& [face, triangle] : chosen) {
+    std::array<Halvings::const_iterator, 3> sides;
+    for (std::size_t k = 0; k < 3; ++k) sides[k] = all.find(segment_of(geometry.faces[face].mesh, triangle, k).name);
+    const auto largest = *std::ranges::max_element(sides, {}, [](const auto& side) { return side->second.off; });
+    if (largest->second.off > straight_mm) worst.insert(*largest);
+  }
+  return worst;
+}
+
+void halve(Triangulation& mesh, const Halvings& halvings) {
+  std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> middles;  // by the numbers of both ends
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+    for (std::size_t k = 0; k < 3;) {
+      const NamedSegment segment = segment_of(mesh, t, k);
+      const auto found = halvings.find(segment.name);
+      if (found == halvings.end()) {
+        ++k;
+        continue;
+      }
+      std::array<std::uint32_t, 3> half = mesh.triangles[t];
+      const auto [middle, fresh] =
+          middles.try_emplace(std::minmax(half[k], half[(k + 1) % 3]), static_cast<std::uint32_t>(mesh.points.size()));
+      if (fresh) mesh.points.push_back({found->second.point, segment.cell});
+      half[k] = middle->second;
+      mesh.triangles[t][(k + 1) % 3] = middle->second;
+      mesh.triangles.push_back(half);
+      k = 0;  // other sides may be named, too
+    }
+}
+
+}  // namespace
+
+std::size_t clear_triangles(Body& body, const RunOptions& run) {
+  std::map<const Template*, std::shared_ptr<Template>> own;
+  for (int pass = 0;; ++pass) {
+    const Chosen chosen = chosen_triangles(looked_at(body));
+    std::size_t count = 0;
+    for (const auto& [geometry, triangles] : chosen) count += triangles.size();
+    if (count == 0 || pass == most_passes || run.should_stop()) return count;
+    bool any = false;
+    for (const auto& [geometry, triangles] : chosen) {
+      const Halvings halvings = halvings_of(*geometry, triangles);
+      if (halvings.empty()) continue;
+      any = true;
+      std::shared_ptr<Template> mine = own[geometry];
+      if (!mine) {
+        mine = std::make_shared<Template>(*geometry);
+        own[mine.get()] = mine;
+        visit_shells(body, [&, from = geometry](Shell& shell) {
+          if (shell.geometry.get() == from) shell.geometry = mine;
+        });
+      }
+      for (FaceTemplate& face : mine->faces) halve(face.mesh, halvings);
+    }
+    if (!any) return count;
+  }
+}
+
+}  // namespace meso::brep
