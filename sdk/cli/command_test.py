@@ -341,7 +341,7 @@ class Outputs(CommandTest):
         self.expect(3, "compare", made_elsewhere, says="HREF_NOT_FOUND")
         self.file("scan/run.sh", "")
         done = self.expect(0, "compare", made_elsewhere, self.folder / "scan" / "gone.meso", self.folder / "good.meso", says="COMPARE_NOT_MADE")
-        self.assertRegex(done.stdout.decode(), r"(?s)good .*\nscan +not made; run .*/scan/run.sh\ngone +not made")
+        self.assertRegex(done.stdout.decode(), r"(?s)good .*\nscan +not made; run .*/scan/run.sh .*/scan\ngone +not made")
         self.expect(2, "verify", self.folder / "good.meso", says="--deep")
         failed = self.expect(6, "convert", self.file("a.meso", document(count="10^12")), self.out("b.step"), "--json")
         self.assertEqual(json.loads(failed.stdout)["diagnostics"][0]["code"], "LIMIT_CELLS")

@@ -42,15 +42,17 @@ Json row_json(const ComparisonRow& r) {
 
 /// A case whose files are made by its own script, and are not there.
 struct NotMade {
-  fs::path document, script;
-  std::string missing;
+  fs::path document;
+  std::string command, missing;
 };
 std::optional<NotMade> not_made(const fs::path& document) {
-  NotMade out{document, document.parent_path() / "run.sh", operations::missing_file(document)};
-  return !out.missing.empty() && fs::exists(out.script) ? std::optional(std::move(out)) : std::nullopt;
+  const fs::path folder = document.has_parent_path() ? document.parent_path() : fs::path("."),
+                 script = folder / "run.sh";
+  NotMade out{document, script.string() + " " + folder.string(), operations::missing_file(document)};
+  return !out.missing.empty() && fs::exists(script) ? std::optional(std::move(out)) : std::nullopt;
 }
 Json row_json(const NotMade& r) {
-  return {{"name", r.document.stem().string()}, {"missing", r.missing}, {"madeBy", r.script.string()}};
+  return {{"name", r.document.stem().string()}, {"missing", r.missing}, {"madeBy", r.command}};
 }
 
 void print_table(const std::vector<ComparisonRow>& rows) {
@@ -184,7 +186,7 @@ int compare_verb(Run& run, const CompareArguments& arguments) {
     if (auto row = not_made(file)) {
       run.sink.report({.code = Code::compare_not_made,
                        .where = {.file = file.string()},
-                       .args = {file.string(), row->missing, row->script.string()}});
+                       .args = {file.string(), row->missing, row->command}});
       missing.push_back(std::move(*row));
       continue;
     }
@@ -201,7 +203,7 @@ int compare_verb(Run& run, const CompareArguments& arguments) {
   }
   if (!run.flags.json)
     for (const NotMade& row : missing)
-      fmt::print("{:<22} not made; run {}\n", row.document.stem().string(), row.script.string());
+      fmt::print("{:<22} not made; run {}\n", row.document.stem().string(), row.command);
   return run.finish();
 }
 
