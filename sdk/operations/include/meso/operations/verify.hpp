@@ -53,7 +53,8 @@ struct VerifyReport {
 struct DeepCheck {
   std::optional<std::size_t> points{};  ///< absent: so many that their deviation is a thousandth of the volume
   std::uint64_t seed = 1;
-  std::uint64_t most_faces_read_back = 5000;  ///< OpenCASCADE's reader takes 5 s for these, and grows with the square
+  /// OpenCASCADE's reader takes 5 s for these, and grows with the square; a free-form face counts as twenty.
+  std::uint64_t most_faces_read_back = 5000;
 };
 
 /// `.meso`: recomputes the validation values of the parts that are made; `.step .stp .stl`: audits the file. With
