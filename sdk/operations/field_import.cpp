@@ -61,16 +61,6 @@ bool is_finite(const fs::path& in, const FieldReport& report, DiagnosticSink& si
   return true;
 }
 
-/// A field of a document has elements of one kind.
-bool fits_a_document(const fs::path& in, const fields::Table& table, DiagnosticSink& sink) {
-  if (table.tetra.empty() || table.hexa.empty() || !table.grid[0].empty()) return true;
-  sink.report({.code = Code::field_file_unsupported,
-               .where = {.file = in.string()},
-               .args = {"a mesh of both " + std::to_string(table.tetra.size() / 4) + " tetrahedra and " +
-                        std::to_string(table.hexa.size() / 8) + " hexahedra, in a document,"}});
-  return false;
-}
-
 bool write_meso(const fields::Table& table, const fs::path& out, const FieldOptions& options, DiagnosticSink& sink) {
   auto file = OutputFile::create(out.string(), options.existing, sink);
   if (!file) return false;
@@ -110,7 +100,7 @@ std::optional<FieldReport> import_field(const fs::path& in, const fs::path& out,
   const auto table = read(in, options, sink);
   if (!table) return std::nullopt;
   FieldReport report = describe(*table);
-  if (!is_finite(in, report, sink) || (is_meso && !fits_a_document(in, *table, sink))) return std::nullopt;
+  if (!is_finite(in, report, sink)) return std::nullopt;
   const bool written = is_meso ? write_meso(*table, out, options, sink) : write_hdf5(*table, out, options, sink);
   return written ? std::optional(std::move(report)) : std::nullopt;
 }

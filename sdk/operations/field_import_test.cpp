@@ -95,21 +95,37 @@ TEST(ImportField, WritesNothingForNumbersThatAreNone) {
   EXPECT_EQ(info->columns.at(3).statistics.nan, 1U);
 }
 
-TEST(ImportField, AMeshOfTwoKindsIsToldAndNotHalved) {
+TEST(ImportField, AMeshOfTwoKindsBecomesOneOfTetrahedra) {
   const std::string in = testing::TempDir() + "mixed.vtk", out = testing::TempDir() + "mixed.meso";
-  std::filesystem::remove(out);
+  // A cube whose lowest record is not its first corner, and a tetrahedron on it; s = 1 + 2x - 3y + z/2.
   std::ofstream(in) << "# vtk DataFile Version 2.0\nmixed\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 9 double\n"
-                       "0 0 0 1 0 0 1 1 0 0 1 0 0 0 1 1 0 1 1 1 1 0 1 1 0.5 0.5 2\nCELLS 2 14\n"
-                       "8 0 1 2 3 4 5 6 7\n4 4 5 6 8\nCELL_TYPES 2\n12 10\nPOINT_DATA 9\nSCALARS s double 1\n"
-                       "LOOKUP_TABLE default\n1 2 3 4 5 6 7 8 9\n";
+                       "1 1 1 0 0 0 1 0 0 1 1 0 0 1 0 0 0 1 1 0 1 0 1 1 1 1 2\nCELLS 2 14\n"
+                       "8 1 2 3 4 5 6 0 7\n4 5 6 0 8\nCELL_TYPES 2\n12 10\nPOINT_DATA 9\nSCALARS s double 1\n"
+                       "LOOKUP_TABLE default\n0.5 1 3 0 -2 1.5 3.5 -1.5 1\n";
   DiagnosticSink sink;
-  EXPECT_FALSE(import_field(in, out, {}, sink));
-  ASSERT_EQ(sink.diagnostics().size(), 1U);
-  EXPECT_THAT(render(sink.diagnostics()[0]), testing::HasSubstr("of both 1 tetrahedra and 1 hexahedra, in a document"));
-  EXPECT_FALSE(std::filesystem::exists(out));
-  const auto info = field_info(in, {}, sink);
-  ASSERT_TRUE(info);
-  EXPECT_EQ(info->hexa, 1U);
+  ASSERT_TRUE(import_field(in, out, {}, sink));
+  std::string text = text_of(out);
+  EXPECT_THAT(text, testing::HasSubstr("elements=\"7\""));
+  const std::string list =
+      "<unitCells><unitCell id='c'><parameter id='a' value='0'/><csg><sphere radius='1'/></csg></unitCell></unitCells>"
+      "<patterns><pattern id='p' unitCell='c'><loop index='i' axis='x' count='5' start='0.1' spacing='0.2'/><loop "
+      "index='j' axis='y' count='5' start='0.1' spacing='0.2'/><loop index='k' axis='z' count='5' start='0.1' "
+      "spacing='0.2'/><sample field='mixed'/><set parameter='a' value='mixed.s'/></pattern></patterns></meso>";
+  text.replace(text.find("</meso>"), 7, list);
+  auto read = read_document(text, "t.meso", sink);
+  auto checked = read ? validate(std::move(read->document), std::move(read->source), ".", sink) : std::nullopt;
+  const auto evaluation = checked ? eval::Evaluation::make(*checked, {}, sink) : std::nullopt;
+  const auto cells = evaluation ? evaluation->cells(*evaluation->find_pattern("p"), sink) : std::nullopt;
+  ASSERT_TRUE(cells) << render(sink.diagnostics().at(0));
+  std::size_t count = 0;
+  EXPECT_TRUE(cells->visit(
+      0, cells->size(),
+      [&](const eval::PlacedCell& c) {
+        EXPECT_NEAR(c.parameters[0], written(c.global), 1e-12);
+        return ++count > 0;
+      },
+      sink));
+  EXPECT_EQ(count, 125U) << "the six leave no gap in the cube";
 }
 
 }  // namespace
