@@ -53,6 +53,7 @@ class PartFold {
   }
 
   CellCounts counts;
+  ClipCounts clip;
   std::string way = "direct";
 
  private:
@@ -96,6 +97,7 @@ class PartFold {
     counts.placed += cells.size();
     counts.kept += lattice->kept;
     counts.crossing += lattice->crossing;
+    clip = std::move(lattice->clip);
     // A union has no fragments; a cut body is one piece a solid at least.
     const std::size_t solids = lattice->body.solids.size(), whole = state.solids.size();
     lattice->body.fragments = whole_cells || whole == 0 || solids <= whole ? 0 : solids - whole;
@@ -144,6 +146,10 @@ void append(Realisation& to, Realisation from) {
   to.cells.placed += from.cells.placed;
   to.cells.kept += from.cells.kept;
   to.cells.crossing += from.cells.crossing;
+  to.clip.distinct += from.clip.distinct;
+  to.clip.attempts.resize(std::max(to.clip.attempts.size(), from.clip.attempts.size()));
+  for (std::size_t n = 0; n < from.clip.attempts.size(); ++n) to.clip.attempts[n] += from.clip.attempts[n];
+  to.clip.edge_tolerance = std::max(to.clip.edge_tolerance, from.clip.edge_tolerance);
   to.cells.fragments += from.cells.fragments;
   to.way = std::move(from.way);
   to.evaluate_seconds += from.evaluate_seconds;
@@ -209,7 +215,8 @@ std::optional<Realisation> realise(const eval::Evaluation& evaluation, const Par
       context.report(Code::geometry_empty, part.id_in_source, {part.id.text});
       return {};
     }
-    Realisation result{{}, fold.counts, std::move(fold.way)};
+    Realisation result{
+        .body = {}, .cells = fold.counts, .clip = std::move(fold.clip), .way = std::move(fold.way)};
     auto body = folded->body ? std::move(folded->body) : to_body(folded->solids, options, sink);
     if (!body) return {};
     if (!folded->body) body->pieces_volume = folded->pieces_volume;

@@ -303,7 +303,7 @@ std::optional<LatticePart> lattice_part(const Solids& macrostructure, const eval
       if (!selected) return {};
       taken = std::move(*selected);
     }
-    out = {{}, taken.kept, taken.crossing};
+    out = {.body = {}, .kept = taken.kept, .crossing = taken.crossing};
     if (out.kept == 0) return out;
     auto body = lattice_union(found->cell, taken.set, options, context.sink);
     if (!body) return {};
@@ -322,7 +322,7 @@ std::optional<LatticePart> lattice_part(const Solids& macrostructure, const eval
     auto clipped =
         clipped_lattice_body(found->cell, last, found->body, {.mesh = mesh, .reuse = true}, context.run, context.sink);
     if (!clipped) return {};
-    out = {std::move(clipped->body), clipped->kept, clipped->crossing};
+    out = {std::move(clipped->body), clipped->kept, clipped->crossing, std::move(clipped->clip)};
   }
   place(out.body, found->lattice.world_from_cell);
   return out;

@@ -8,6 +8,7 @@
 #include "lattice/cell_selection.hpp"
 #include "meso/brep/body_sample.hpp"
 #include "meso/brep/lattice_body.hpp"
+#include "meso/brep/realise.hpp"
 #include "meso/eval/evaluation.hpp"
 #include "solid_context.hpp"
 
@@ -17,6 +18,7 @@ struct LatticePart {
   Body body;
   std::uint64_t kept = 0;
   std::uint64_t crossing = 0;
+  ClipCounts clip{};
 };
 
 /// Macrostructure n union of the cells, without a macrostructure the union of the cells, or of those that a boundary

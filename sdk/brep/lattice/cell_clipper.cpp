@@ -2,6 +2,9 @@
 #include "lattice/cell_clipper.hpp"
 
 #include <array>
+#include <optional>
+
+#include "meso/base/number.hpp"
 
 namespace meso::brep {
 namespace {
@@ -51,20 +54,29 @@ ClippedCell CellClipper::clip(std::uint32_t kind, const Index3& cell, const std:
                                        {.shift = {a, -0.7 * a, 0.4 * a}},
                                        {.shift = {-0.6 * a, a, -0.8 * a}}}};
   std::string fault;
+  std::optional<ClippedCell> best;  // of those with rough edges
+  const Vec3 size = grid_.size();
+  const double rough = rough_edge * std::fmin(size.x, std::fmin(size.y, size.z));
   for (std::size_t n = 0; n < ladder.size() && !run_.should_stop(); ++n) {
     try {
       ClippedCell made = attempt(ladder[n], whole(kind), cell, faces);
       made.attempts = n + 1;
-      if (made.fault.empty()) return made;
+      if (made.fault.empty() && made.edge_tolerance <= rough) return made;
+      if (made.fault.empty() && (!best || made.edge_tolerance < best->edge_tolerance)) best = made;
       if (fault.empty()) fault = made.fault;
     } catch (const Standard_Failure& failure) {
       if (fault.empty()) fault = failure.GetMessageString();
     }
   }
-  if (fault.empty()) return {.fault = "stopped"};
-  std::string at;
-  for (const std::int32_t i : cell) at += (at.empty() ? "cell (" : ", ") + std::to_string(i);
-  return {.fault = at + ") in " + std::to_string(ladder.size()) + " ways: " + fault};
+  if (run_.should_stop()) return {.fault = "stopped"};
+  if (best) return *best;
+  const auto listed = [](const auto& values) {
+    std::string out;
+    for (std::size_t i = 0; i < 3; ++i) out += (i == 0 ? "(" : ", ") + format_number(values[i]);
+    return out + ")";
+  };
+  return {.fault = "cell " + listed(cell) + ", " + listed(grid_.origin(cell) - grid_.first.min) +
+                   " mm from the first, in " + std::to_string(ladder.size()) + " ways: " + fault};
 }
 
 ClippedCell CellClipper::attempt(const Attempt& how, WholeCell& whole, const Index3& cell,

@@ -2,8 +2,9 @@
 #pragma once
 // What a body leaves of the solid in one cell box: one checked boolean, in the cell's own frame. Private.
 //
-// A result that does not pass the checks of cell_split is made again in other ways: with the whole faces of body and
-// cell, with a fuzzy tolerance, with the body shifted by a millionth of the cell. How many ways were tried is told.
+// A result that does not pass the checks of cell_split, or whose edges are known to less than a thousandth of the cell,
+// is made again in other ways: with the whole faces of body and cell, with a fuzzy tolerance, with the body shifted by
+// a millionth of the cell. How many ways were tried is told; of results with rough edges the best is taken.
 //
 // Thread rule: one for each thread; it works on copies of its own, because OpenCASCADE writes to the shapes it reads.
 
@@ -17,6 +18,9 @@
 #include "meso/base/run_options.hpp"
 
 namespace meso::brep {
+
+/// Of the cell: edges that are known to less are told.
+constexpr double rough_edge = 1e-3;
 
 class CellClipper {
  public:

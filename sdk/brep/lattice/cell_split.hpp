@@ -11,15 +11,10 @@
 //
 // Thread rule: one for each thread.
 
-#include <BRepClass3d_SolidClassifier.hxx>
-#include <deque>
-#include <functional>
 #include <string>
-#include <vector>
 
-#include "lattice/mesh_probe.hpp"
+#include "lattice/divided_faces.hpp"
 #include "meso/base/run_options.hpp"
-#include "occt.hpp"
 
 namespace meso::brep {
 
@@ -29,38 +24,7 @@ struct ClippedCell {
   TopoDS_Shape solid;  ///< where a part is left: a compound of solids
   std::string fault;   ///< why there is none
   std::size_t attempts = 1;
-};
-
-/// One kind of box: its solids, with what is asked of them again and again.
-struct WholeCell {
-  struct Face {
-    TopoDS_Face face;  ///< outward
-    std::vector<Triangle3> triangles;
-    Box3 box;
-    double share = 0;  ///< of the volume
-    Vec3 area;         ///< as a vector
-  };
-  std::vector<Face> faces;
-  MeshProbe probe;
-  std::deque<BRepClass3d_SolidClassifier> solids;  // they cannot be moved
-  double volume = 0;
-  double reach = 0;  ///< how far a face is from its triangles
-};
-[[nodiscard]] WholeCell whole_cell(const TopoDS_Shape& solid, double deflection);
-
-/// The body near one cell, in the cell's frame.
-struct LocalBody {
-  std::vector<TopoDS_Shape> faces;  ///< compounds, one for each solid
-  std::vector<Triangle3> triangles;
-  double reach = 0;                    ///< how far a face is from its triangles
-  std::function<bool(Vec3)> contains;  ///< for points that keep `reach` from the triangles
-  std::function<int(Vec3)> side;       ///< of any point, slowly; +1: inside, -1: outside, 0: too close to say
-};
-
-struct SplitOptions {
-  bool all_faces = false;  ///< also those that do not come near
-  double fuzzy = 0;
-  double size = 0;  ///< of the cell: lengths below 1e-6 of it do not count
+  double edge_tolerance = 0;  ///< largest of the part's edges and corners, in millimetres
 };
 
 /// May throw Standard_Failure.

@@ -10,6 +10,7 @@
 #include "lattice/clip_signature.hpp"
 #include "lattice/parallel.hpp"
 #include "lattice/quotient_builder.hpp"
+#include "meso/base/number.hpp"
 
 namespace meso::brep {
 namespace {
@@ -84,6 +85,31 @@ void clip_all(std::vector<ClipTask>& tasks, const std::vector<TopoDS_Shape>& sol
   });
 }
 
+/// What it took, as numbers and, where it was not the usual, as diagnostics.
+ClipCounts counts_of(const std::vector<ClipTask>& tasks, Vec3 size, DiagnosticSink& sink) {
+  ClipCounts counts{.distinct = tasks.size()};
+  for (const ClipTask& task : tasks) {
+    counts.attempts.resize(std::max(counts.attempts.size(), task.result.attempts));
+    ++counts.attempts[task.result.attempts - 1];
+    counts.edge_tolerance = std::max(counts.edge_tolerance, task.result.edge_tolerance);
+  }
+  std::string ways;
+  std::uint64_t again = 0;
+  for (std::size_t n = 1; n < counts.attempts.size(); ++n) {
+    if (counts.attempts[n] == 0) continue;
+    again += counts.attempts[n];
+    ways += (ways.empty() ? "" : ", ") + std::to_string(counts.attempts[n]) + " took " + std::to_string(n + 1);
+  }
+  if (again > 0)
+    sink.report(
+        {.code = Code::geometry_retried, .args = {std::to_string(again), std::to_string(counts.distinct), ways}});
+  const double rough = rough_edge * std::min({size.x, size.y, size.z});
+  if (counts.edge_tolerance > rough)
+    sink.report(
+        {.code = Code::geometry_edge_tolerance, .args = {format_number(counts.edge_tolerance), format_number(rough)}});
+  return counts;
+}
+
 }  // namespace
 
 std::optional<ClippedLattice> clipped_lattice_body(const CellShape& cell, const Index3& last,
@@ -117,7 +143,6 @@ std::optional<ClippedLattice> clipped_lattice_body(const CellShape& cell, const 
   if (run.should_stop()) return stopped();
   std::vector<std::uint32_t> kind_of_task;
   ClippedLattice out;
-  out.distinct = plan.tasks.size();
   for (ClipTask& task : plan.tasks) {
     if (!task.result.fault.empty()) return fault(task.result.fault);
     if (task.result.left == ClippedCell::Left::all) {
@@ -141,6 +166,7 @@ std::optional<ClippedLattice> clipped_lattice_body(const CellShape& cell, const 
   auto made = assemble(std::move(*quotient), std::move(cells), std::move(kinds), run, sink);
   if (!made) return {};
   out.body = std::move(*made);
+  out.clip = counts_of(plan.tasks, grid.size(), sink);
   return out;
 }
 

@@ -7,6 +7,7 @@
 
 #include "lattice/shape_lattice.hpp"
 #include "meso/base/run_options.hpp"
+#include "meso/brep/realise.hpp"
 
 namespace meso::brep {
 
@@ -14,7 +15,7 @@ struct ClippedLattice {
   Body body;
   std::uint64_t kept = 0;      ///< cells of which something is left
   std::uint64_t crossing = 0;  ///< of these, cut by the boundary
-  std::size_t distinct = 0;    ///< booleans they took
+  ClipCounts clip;             ///< booleans they took
 };
 
 struct ClipOptions {

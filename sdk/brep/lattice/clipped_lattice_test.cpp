@@ -106,8 +106,8 @@ TEST(ClippedLattice, ReuseChangesNothingButTheTime) {
   const Made once = clipped(body, {4, 2, 1}), each = clipped(body, {4, 2, 1}, false);
   expect_clean(once);
   expect_clean(each);
-  EXPECT_LE(once.lattice->distinct, 6u);
-  EXPECT_EQ(each.lattice->distinct, 8u);
+  EXPECT_LE(once.lattice->clip.distinct, 6u);
+  EXPECT_EQ(each.lattice->clip.distinct, 8u);
   EXPECT_NEAR(once.volume, each.volume, 1e-9 * each.volume);
   EXPECT_EQ(once.audit.faces, each.audit.faces);
 }
@@ -197,7 +197,7 @@ TEST(ClippedLattice, CylinderAndSphere) {
   const auto [rod_volume, rod_error] =
       counted({{5, 5, 1.2}, {11, 10, 17.2}}, [](Vec3 p) { return std::hypot(p.x - 8.1, p.y - 7.7) < 2.2; });
   EXPECT_NEAR(in_rod.volume, rod_volume, 4 * rod_error);
-  EXPECT_EQ(in_rod.lattice->distinct, 6u);  // two cells a layer: both ends, and two layers that look alike
+  EXPECT_EQ(in_rod.lattice->clip.distinct, 6u);  // two cells a layer: both ends, and two layers that look alike
 
   const TopoDS_Shape globe = BRepPrimAPI_MakeSphere(gp_Pnt(8.1, 7.7, 8.2), 4).Solid();
   const Made in_globe = clipped({globe}, {3, 3, 3});

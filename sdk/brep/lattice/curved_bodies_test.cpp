@@ -3,12 +3,19 @@
 #include <gtest/gtest.h>
 
 #include <BRepBuilderAPI_MakePolygon.hxx>
+#include <BRepBuilderAPI_Sewing.hxx>
 #include <BRepFilletAPI_MakeFillet.hxx>
+#include <Geom_BezierCurve.hxx>
+#include <Geom_BezierSurface.hxx>
+#include <STEPControl_Reader.hxx>
+#include <STEPControl_Writer.hxx>
+#include <filesystem>
 #include <functional>
 #include <numbers>
 #include <random>
 
 #include "boolean.hpp"
+#include "lattice/cell_clipper.hpp"
 #include "lattice/clipped_lattice.hpp"
 #include "lattice/primitive_field.hpp"
 #include "meso/brep/audit.hpp"
@@ -103,6 +110,79 @@ TestBody gear() {
   return {solid, inside, 5.1};
 }
 
+/// A round body whose radius is a cubic polynomial of the height, as rational B-spline surfaces.
+TestBody spline_vase() {
+  constexpr std::array<double, 4> radii{2.8, 5.6, 0.8, 3.6};
+  TColgp_Array1OfPnt poles(1, 4);
+  for (int i = 0; i < 4; ++i)
+    poles(i + 1) = to_pnt(centre + Vec3{radii[static_cast<std::size_t>(i)], 0, -4 + 8.0 * i / 3});
+  const TopoDS_Edge side = BRepBuilderAPI_MakeEdge(new Geom_BezierCurve(poles)).Edge();
+  const gp_Pnt low = to_pnt(centre - Vec3{0, 0, 4}), high = to_pnt(centre + Vec3{0, 0, 4});
+  BRepBuilderAPI_MakeWire outline(side, BRepBuilderAPI_MakeEdge(poles(4), high).Edge(),
+                                  BRepBuilderAPI_MakeEdge(high, low).Edge());
+  outline.Add(BRepBuilderAPI_MakeEdge(low, poles(1)).Edge());
+  const TopoDS_Shape turned =
+      BRepPrimAPI_MakeRevol(BRepBuilderAPI_MakeFace(outline.Wire()).Face(), gp_Ax1(low, gp::DZ())).Shape();
+  const auto inside = [radii](Vec3 p) {
+    const double t = (p.z + 4) / 8, s = 1 - t;
+    const double radius =
+        radii[0] * s * s * s + 3 * radii[1] * s * s * t + 3 * radii[2] * s * t * t + radii[3] * t * t * t;
+    return std::fabs(p.z) < 4 && std::hypot(p.x, p.y) < radius;
+  };
+  return {solids_of(BRepBuilderAPI_NurbsConvert(turned, true).Shape()).at(0), inside, 5};
+}
+
+/// A cube that a polynomial map bends: six faces, each one a B-spline surface, four of them curved.
+TestBody bent_cube() {
+  const auto bend = [](Vec3 p) {
+    return Vec3{4 * p.x + 1.2 * p.z * p.z, 3.6 * p.y * (1 + 0.25 * p.z) + p.x * p.x, 3.6 * p.z};
+  };
+  BRepBuilderAPI_Sewing sewing(1e-7);
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    for (const double side : {-1.0, 1.0}) {
+      // Biquadratic: the values at -1, 0 and 1 say all.
+      std::array<std::array<Vec3, 3>, 3> poles;
+      for (std::size_t i = 0; i < 3; ++i)
+        for (std::size_t k = 0; k < 3; ++k) {
+          Vec3 p;
+          p[axis] = side;
+          p[(axis + 1) % 3] = static_cast<double>(i) - 1;
+          p[(axis + 2) % 3] = static_cast<double>(k) - 1;
+          poles[i][k] = bend(p);
+        }
+      for (std::size_t k = 0; k < 3; ++k) poles[1][k] = 2.0 * poles[1][k] - 0.5 * (poles[0][k] + poles[2][k]);
+      for (auto& row : poles) row[1] = 2.0 * row[1] - 0.5 * (row[0] + row[2]);
+      TColgp_Array2OfPnt points(1, 3, 1, 3);
+      for (int i = 1; i <= 3; ++i)
+        for (int k = 1; k <= 3; ++k)
+          points(i, k) = to_pnt(centre + poles[static_cast<std::size_t>(i) - 1][static_cast<std::size_t>(k) - 1]);
+      const Handle(Geom_Surface) surface = GeomConvert::SurfaceToBSplineSurface(new Geom_BezierSurface(points));
+      sewing.Add(BRepBuilderAPI_MakeFace(surface, 1e-7).Face());
+    }
+  sewing.Perform();
+  const TopExp_Explorer shell(sewing.SewedShape(), TopAbs_SHELL);
+  TopoDS_Solid solid = BRepBuilderAPI_MakeSolid(TopoDS::Shell(shell.Current())).Solid();
+  BRepLib::OrientClosedSolid(solid);
+  const auto inside = [](Vec3 p) {
+    const double z = p.z / 3.6, x = (p.x - 1.2 * z * z) / 4, y = (p.y - x * x) / (3.6 * (1 + 0.25 * z));
+    return std::fabs(x) < 1 && std::fabs(y) < 1 && std::fabs(z) < 1;
+  };
+  return {solids_of(solid).at(0), inside, 5.6};
+}
+
+/// What other programs would read of it.
+TestBody through_step(const TestBody& body) {
+  const std::string file = (std::filesystem::temp_directory_path() / "meso_curved_body.step").string();
+  STEPControl_Writer writer;
+  writer.Transfer(body.solid, STEPControl_AsIs);
+  writer.Write(file.c_str());
+  STEPControl_Reader reader;
+  reader.ReadFile(file.c_str());
+  reader.TransferRoots();
+  std::filesystem::remove(file);
+  return {solids_of(reader.OneShape()).at(0), body.inside, body.reach};
+}
+
 /// 17 degrees about (1, 2, 0.5) through the centre.
 TestBody tilted(const TestBody& body) {
   gp_Trsf turn;
@@ -122,7 +202,8 @@ void expect_right(const LatticeCell& lattice, const TestBody& body) {
   for (const Diagnostic& d : sink.diagnostics()) ADD_FAILURE() << render(d);
   ASSERT_TRUE(made);
   EXPECT_TRUE(audit(made->body).clean());
-  EXPECT_GE(made->distinct, 8u);
+  EXPECT_GE(made->clip.distinct, 8u);
+  EXPECT_LT(made->clip.edge_tolerance, rough_edge * lattice.box.max.x);
   std::mt19937_64 random(11);
   std::uniform_real_distribution<double> uniform(-body.reach, body.reach);
   constexpr int count = 200'000;
@@ -142,6 +223,8 @@ TEST(CurvedBodies, Torus) { expect_right(bcc(), tilted(torus())); }
 TEST(CurvedBodies, Cone) { expect_right(bcc(), tilted(cone())); }
 TEST(CurvedBodies, RoundedCylinder) { expect_right(bcc(), rounded_cylinder()); }
 TEST(CurvedBodies, AThousandFaces) { expect_right(bcc(), tilted(gear())); }
+TEST(CurvedBodies, ImportedVaseOfBSplines) { expect_right(bcc(), tilted(through_step(spline_vase()))); }
+TEST(CurvedBodies, ImportedBentCube) { expect_right(bcc(), through_step(bent_cube())); }
 TEST(CurvedBodies, OctetInACone) { expect_right(octet(), tilted(cone())); }
 
 }  // namespace

@@ -20,6 +20,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "meso/brep/body.hpp"
 #include "meso/eval/evaluation.hpp"
@@ -41,9 +42,17 @@ struct CellCounts {
   std::size_t fragments = 0;   ///< solids beyond the largest that a cut has left loose
 };
 
+/// How the cells of a lattice were cut at the boundary of a body: those that see the same piece of it share a result.
+struct ClipCounts {
+  std::uint64_t distinct = 0;             ///< results that were made
+  std::vector<std::uint64_t> attempts{};  ///< [n]: of these, took n + 1 attempts
+  double edge_tolerance = 0;              ///< how far an edge may be from its faces, at most, in millimetres
+};
+
 struct Realisation {
   Body body;
   CellCounts cells;
+  ClipCounts clip;
   std::string way;  ///< "direct", "lattice", "cells" or "boolean"; the last that was needed
   double evaluate_seconds = 0, realise_seconds = 0;
 };

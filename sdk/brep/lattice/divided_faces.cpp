@@ -1,0 +1,192 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lattice/divided_faces.hpp"
+
+#include <BOPAlgo_Builder.hxx>
+#include <BOPAlgo_PaveFiller.hxx>
+#include <BOPTools_AlgoTools.hxx>
+#include <algorithm>
+
+#include "lattice/section_curves.hpp"
+#include "stop_watch.hpp"
+
+namespace meso::brep {
+namespace {
+
+constexpr double tiny = 1e-6;  ///< relative to the cell
+
+Box3 box_of(const Triangle3& triangle, double by) {
+  Box3 box;
+  for (const Vec3 p : triangle) box.extend(p);
+  return {box.min - Vec3{by, by, by}, box.max + Vec3{by, by, by}};
+}
+
+bool overlaps(const Triangle3& triangle, const Box3& box) {
+  return brep::overlaps(triangle, 0.5 * (box.min + box.max), 0.5 * (box.max - box.min));
+}
+
+/// Whether they may touch, given how far triangles can be off.
+bool come_near(const WholeCell::Face& face, const std::vector<Triangle3>& others, double by) {
+  const Box3 all{face.box.min - Vec3{by, by, by}, face.box.max + Vec3{by, by, by}};
+  std::vector<Triangle3> near;
+  for (const Triangle3& other : others)
+    if (overlaps(other, all)) near.push_back(other);
+  if (near.empty()) return false;
+  return std::ranges::any_of(face.triangles, [&](const Triangle3& own) {
+    const Box3 box = box_of(own, by);
+    return std::ranges::any_of(near, [&](const Triangle3& other) { return overlaps(other, box); });
+  });
+}
+
+class FaceDivision {
+ public:
+  FaceDivision(const WholeCell& cell, const LocalBody& body, const SplitOptions& options)
+      : cell_(cell), body_(body), options_(options) {}
+
+  std::optional<DividedFaces> run(const RunOptions& run) {
+    if (!intersect(run)) return {};
+    read_edges();
+    fit();
+    return std::move(out_);
+  }
+
+ private:
+  bool intersect(const RunOptions& run);
+  void take_pieces(BOPAlgo_Builder& builder, const std::vector<TopoDS_Face>& own, const std::vector<bool>& near,
+                   const std::vector<TopoDS_Face>& tools);
+  void read_edges();
+  void fit();
+
+  const WholeCell& cell_;
+  const LocalBody& body_;
+  SplitOptions options_;
+  DividedFaces out_;
+};
+
+bool FaceDivision::intersect(const RunOptions& run) {
+  // Copies, because faces that are not intersected must go on sharing the very edges that are.
+  std::vector<TopoDS_Face> originals;
+  for (const WholeCell::Face& face : cell_.faces) originals.push_back(face.face);
+  const std::vector<TopoDS_Face> own =
+      faces_in(BRepBuilderAPI_Copy(compound_of(originals), Standard_False, Standard_False).Shape());
+  std::vector<TopoDS_Face> tools;
+  TopTools_ListOfShape arguments;
+  std::vector<bool> near;
+  std::vector<TopoDS_Face> near_faces;
+  for (std::size_t f = 0; f < own.size(); ++f) {
+    near.push_back(options_.all_faces ||
+                   come_near(cell_.faces[f], body_.triangles, cell_.reach + body_.reach + tiny * options_.size));
+    if (near.back()) near_faces.push_back(own[f]);
+  }
+  if (!near_faces.empty()) arguments.Append(compound_of(near_faces));
+  for (const TopoDS_Shape& solid : body_.faces) {
+    const TopoDS_Shape copy = BRepBuilderAPI_Copy(solid, Standard_False, Standard_False).Shape();
+    for (const TopoDS_Face& face : faces_in(copy)) tools.push_back(face);
+    arguments.Append(copy);
+  }
+  BOPAlgo_Builder builder;
+  if (near_faces.empty()) {
+    take_pieces(builder, own, near, tools);
+    return true;
+  }
+  const Handle(StopWatch) watch = new StopWatch(run);
+  BOPAlgo_PaveFiller filler;
+  filler.SetArguments(arguments);
+  filler.SetFuzzyValue(options_.fuzzy);
+  filler.Perform(watch->Start());
+  if (filler.HasErrors()) return false;
+  for (const TopoDS_Shape& argument : arguments) builder.AddArgument(argument);
+  builder.PerformWithFiller(filler, watch->Start());
+  if (builder.HasErrors()) return false;
+  take_pieces(builder, own, near, tools);
+  return true;
+}
+
+void FaceDivision::take_pieces(BOPAlgo_Builder& builder, const std::vector<TopoDS_Face>& own,
+                               const std::vector<bool>& near, const std::vector<TopoDS_Face>& tools) {
+  TopTools_IndexedMapOfShape known;  // pieces of the cell, numbered as in out_.pieces
+  const auto pieces_of = [&](const TopoDS_Face& face) {
+    std::vector<TopoDS_Face> out;
+    TopTools_ListOfShape images;
+    if (!builder.Images().Find(face, images)) images.Append(face);
+    for (const TopoDS_Shape& image : images) {
+      const TopoDS_Shape* same = builder.ShapesSD().Seek(image);
+      TopoDS_Face piece = TopoDS::Face(same != nullptr ? *same : image);
+      if (!piece.IsSame(face)) {
+        Standard_Integer error = 0;
+        if (BOPTools_AlgoTools::IsSplitToReverse(piece, face, out_.context, &error)) piece.Reverse();
+        if (error != 0) throw Standard_Failure("a piece of a face looks both ways");
+      } else {
+        piece = face;
+      }
+      out.push_back(piece);
+    }
+    return out;
+  };
+  for (std::uint32_t f = 0; f < own.size(); ++f) {
+    const auto pieces = near[f] ? pieces_of(own[f]) : std::vector{own[f]};
+    for (const TopoDS_Face& piece : pieces) {
+      known.Add(piece);
+      out_.pieces.push_back({.face = piece, .of = f, .whole = pieces.size() == 1});
+    }
+  }
+  out_.of_cell = out_.pieces.size();
+  for (std::uint32_t t = 0; t < tools.size(); ++t)
+    for (const TopoDS_Face& piece : pieces_of(tools[t])) {
+      const int same = known.FindIndex(piece);
+      if (same > 0) {
+        Piece& other = out_.pieces[static_cast<std::size_t>(same) - 1];
+        other.coincident = other.face.Orientation() == piece.Orientation() ? 1 : -1;
+      } else {
+        out_.pieces.push_back({.face = piece, .of = t});
+      }
+    }
+}
+
+void FaceDivision::read_edges() {
+  for (std::uint32_t p = 0; p < out_.pieces.size(); ++p)
+    for (TopExp_Explorer it(out_.pieces[p].face, TopAbs_EDGE); it.More(); it.Next()) {
+      const TopoDS_Edge& edge = TopoDS::Edge(it.Current());
+      if (BRep_Tool::Degenerated(edge) || edge.Orientation() == TopAbs_INTERNAL) continue;
+      const auto index = static_cast<std::size_t>(out_.edges.Add(edge)) - 1;
+      if (index >= out_.uses.size()) {
+        out_.uses.emplace_back();
+        out_.by_cell.push_back(false);
+        out_.by_body.push_back(false);
+      }
+      out_.uses[index].push_back({p, edge.Orientation() == TopAbs_REVERSED});
+      (p < out_.of_cell ? out_.by_cell : out_.by_body)[index] = true;
+      if (out_.pieces[p].coincident != 0) out_.by_body[index] = true;
+    }
+}
+
+/// Sections lie in one face of the cell and in one of the body; what else there is are pieces of old edges.
+void FaceDivision::fit() {
+  std::vector<SectionEdge> sections;
+  std::vector<DividedEdge> divided;
+  for (std::size_t e = 0; e < out_.uses.size(); ++e) {
+    const TopoDS_Edge& edge = TopoDS::Edge(out_.edges(static_cast<int>(e) + 1));
+    const Piece* of_cell = nullptr;
+    const Piece* of_body = nullptr;
+    bool section = out_.by_cell[e] && out_.by_body[e];
+    for (const PieceUse& use : out_.uses[e]) {
+      const Piece& piece = out_.pieces[use.piece];
+      const Piece*& known = use.piece < out_.of_cell ? of_cell : of_body;
+      section = section && piece.coincident == 0 && (known == nullptr || known->of == piece.of);
+      known = &piece;
+    }
+    if (section && of_cell != nullptr && of_body != nullptr)
+      sections.push_back({edge, of_cell->face, of_body->face});
+    else
+      divided.push_back({edge, out_.by_cell[e], out_.by_body[e]});
+  }
+  fit_sections(sections, divided, options_.size);
+}
+
+}  // namespace
+
+std::optional<DividedFaces> divide_faces(const WholeCell& cell, const LocalBody& body, const SplitOptions& options,
+                                         const RunOptions& run) {
+  return FaceDivision(cell, body, options).run(run);
+}
+
+}  // namespace meso::brep
