@@ -68,10 +68,6 @@ Json report_json(const operations::ConvertReport& r, const std::string& in, cons
   if (r.clip.distinct > 0)
     j["boundary"] = {
         {"distinct", r.clip.distinct}, {"attempts", r.clip.attempts}, {"edgeTolerance", r.clip.edge_tolerance}};
-  if (r.clip.distinct > 0)
-    j["boundary"] = {{"distinct", r.clip.distinct},
-                     {"attempts", r.clip.attempts},
-                     {"edgeTolerance", r.clip.edge_tolerance}};
   j["solids"] = r.measures.solids;
   j["faces"] = r.measures.faces;
   j["triangles"] = r.triangles;
