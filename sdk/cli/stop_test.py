@@ -70,7 +70,7 @@ WORK = {
     "field of 800^3": "convert {d}/gyroid.meso {o}/a.ply --samples 800^3",
     "words, 800^3": "sdf tpms.gyroid -s 800,800,800 --polish -o {o}/a.ply",
     "tetrahedra": "sdf tpms.gyroid -s 400,400,400 -o {o}/a.vtu",
-    "a large STEP read": "verify {d}/large.step",
+    "a large STEP read": "verify --deep {d}/large.step",
     "a large STEP imported": "convert {d}/import.meso {o}/a.stl",
     "a deep check": "verify --deep {d}/many.meso",
     "a deep check of a cut lattice": "verify --deep {d}/torus.meso",
