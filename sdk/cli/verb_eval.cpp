@@ -8,6 +8,7 @@
 #include "meso/base/number.hpp"
 #include "meso/base/output_file.hpp"
 #include "meso/eval/evaluation.hpp"
+#include "meso/eval/pattern_reach.hpp"
 #ifdef MESO_CLI_BREP
 #include "meso/operations/macrostructure_distance.hpp"
 #endif
@@ -163,7 +164,8 @@ int eval_verb(Run& run, const std::string& in, const std::string& out_path, cons
   if (!cells) return run.finish();
   const bool json = run.flags.json || out_path.ends_with(".json");
   // A look at every cell first: a fault in the last one must not leave half a table behind.
-  if (!cells->visit(
+  if (!eval::check_keeps_any(*evaluation, *cells, run.sink) ||
+      !cells->visit(
           0, cells->size(), [](const PlacedCell&) { return true; }, run.sink)) {
     return run.finish({{"pattern", pattern->id.text}, {"unitCell", pattern->unit_cell.text}, {"cells", Json::array()}});
   }
@@ -178,7 +180,7 @@ int eval_verb(Run& run, const std::string& in, const std::string& out_path, cons
 void add_eval(CLI::App& app, Run& run) {
   CLI::App* verb = app.add_subcommand("eval", "Write the placed cells of a pattern (CSV, JSON)");
   static std::string in, out, pattern;
-  verb->add_option("IN", in, "Document (.meso)")->required();
+  verb->add_option("IN", in, "Document (.meso, .mesoz)")->required();
   verb->add_option("OUT", out, "Output file (.csv or .json); standard output if absent");
   verb->add_option("--pattern", pattern, "The pattern, if the document has several")->type_name("ID");
   add_set_flag(*verb, run.flags);
