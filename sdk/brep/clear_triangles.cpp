@@ -245,14 +245,19 @@ void halve(Triangulation& mesh, const Halvings& halvings) {
 }  // namespace
 
 std::size_t clear_triangles(Body& body, const RunOptions& run) {
+  const Body given = body;
   std::map<const Template*, std::shared_ptr<Template>> own;
+  std::size_t first_count = 0;
   for (int pass = 0;; ++pass) {
     const Chosen chosen = chosen_triangles(looked_at(body));
     std::size_t count = 0;
     for (const auto& [geometry, triangles] : chosen) count += triangles.size();
-    if (count == 0 || pass == most_passes || run.should_stop()) return count;
+    if (count == 0) return 0;
+    if (pass == 0) first_count = count;
     bool any = false;
+    const bool hopeless = pass == most_passes || count > 4 * first_count + 1000 || run.should_stop();
     for (const auto& [geometry, triangles] : chosen) {
+      if (hopeless) break;
       const Halvings halvings = halvings_of(*geometry, triangles);
       if (halvings.empty()) continue;
       any = true;
@@ -266,7 +271,9 @@ std::size_t clear_triangles(Body& body, const RunOptions& run) {
       }
       for (FaceTemplate& face : mine->faces) halve(face.mesh, halvings);
     }
-    if (!any) return count;
+    if (any) continue;
+    body = given;  // they touch: finer triangles would, too
+    return first_count;
   }
 }
 

@@ -93,6 +93,8 @@ TEST(ClearTriangles, BodiesThatTouchAreTold) {
   body.solids = {{whole_template(geometry), {}},
                  {whole_template(geometry, Affine::from_translation({1, 0.2, 0.1})), {}}};
   EXPECT_GT(clear_triangles(body, {.deadline = std::chrono::steady_clock::now()}), 0u);
+  EXPECT_GT(clear_triangles(body, {}), 0u);
+  EXPECT_EQ(body.solids[0].outer.geometry, geometry);
   EXPECT_EQ(body.solids[0].outer.geometry->faces[0].mesh.triangles.size(), 8u);
 }
 

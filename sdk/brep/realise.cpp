@@ -3,14 +3,20 @@
 
 #include <algorithm>
 #include <chrono>
+#include <map>
 
+#include "meso/brep/clear_triangles.hpp"
+#include "meso/brep/instance_map.hpp"
 #include "meso/brep/measure.hpp"
+#include "meso/brep/placement.hpp"
+#include "realise_boundary.hpp"
 #include "realise_fold.hpp"
 #include "realise_lattice.hpp"
 #include "realise_part.hpp"
 #include "shape_to_body.hpp"
 #include "solid_primitive.hpp"
 #include "solid_shape.hpp"
+#include "surface_point.hpp"
 
 namespace meso::brep {
 namespace {
@@ -30,6 +36,39 @@ void keep_largest(Body& body) {
   const auto volume = [](const Solid& solid) { return measure(Body{.solids = {solid}, .fragments = 0}).volume; };
   body.solids = {*std::ranges::max_element(body.solids, {}, volume)};
   body.pieces_volume = 0;
+}
+
+/// The solid that a vertex or, where all lie on the boundary, the point nearest to the middle of a face is in.
+std::size_t owner_of(const Solid& piece, const Boundary& boundary) {
+  const Shell& shell = piece.outer;
+  const Template& geometry = *shell.geometry;
+  int owner = -1;
+  const auto ask = [&](Vec3 p, const Index3& cell) {
+    if (owner < 0) owner = boundary.solid_at(shell.placement * (p + cell_origin(geometry, cell)));
+  };
+  shell.visit([&](const FaceInstance& instance) {
+    const FaceTemplate& face = geometry.faces[instance.face];
+    for (const auto& loop : face.loops)
+      for (const Coedge& use : loop) {
+        const EdgeTemplate& edge = geometry.edges[use.edge];
+        ask(geometry.vertices[edge.vertex[0]], instance.cell + use.offset + edge.vertex_offset[0]);
+      }
+    ask(nearest_point(face.surface, 0.5 * (face.box.min + face.box.max)), instance.cell);
+  });
+  return static_cast<std::size_t>(std::max(owner, 0));
+}
+
+CellCounts sum_of(const CellCounts& a, const CellCounts& b) {
+  return {a.placed + b.placed, a.kept + b.kept, a.crossing + b.crossing, a.fragments + b.fragments};
+}
+
+/// How many of the solids `pieces` was cut from it has pieces of.
+std::size_t solids_cut(const Body& pieces, const Solids& before) {
+  if (before.size() == 1) return std::min<std::size_t>(pieces.solids.size(), 1);
+  const Boundary boundary(before);
+  std::vector<bool> is_left(before.size());
+  for (const Solid& piece : pieces.solids) is_left[owner_of(piece, boundary)] = true;
+  return static_cast<std::size_t>(std::ranges::count(is_left, true));
 }
 
 class PartFold {
@@ -98,9 +137,9 @@ class PartFold {
     counts.kept += lattice->kept;
     counts.crossing += lattice->crossing;
     clip = std::move(lattice->clip);
-    // A union has no fragments; a cut body is one piece a solid at least.
-    const std::size_t solids = lattice->body.solids.size(), whole = state.solids.size();
-    lattice->body.fragments = whole_cells || whole == 0 || solids <= whole ? 0 : solids - whole;
+    // A union has no fragments; of each solid of a cut body that anything is left of, one piece is that solid.
+    const std::size_t cut = whole_cells || state.solids.empty() ? 0 : solids_cut(lattice->body, state.solids);
+    lattice->body.fragments = cut == 0 ? 0 : lattice->body.solids.size() - cut;
     counts.fragments += lattice->body.fragments;
     if (lattice->body.fragments > 0) {
       const FragmentRule rule = apply.fragments.value_or(FragmentRule::keep);
@@ -119,15 +158,31 @@ class PartFold {
     const Part* part = evaluation_.find_part(apply.part->text);
     const auto placement = evaluation_.placement(apply.placement, context_.sink);
     if (part == nullptr || !placement) return {};
-    auto operand = fold(*part, false);
-    if (!operand) return {};
-    for (TopoDS_Shape& solid : operand->solids) solid = mapped(solid, *placement);
-    return apply_solids(body, operand->solids, context);
+    const Operand* operand = operand_of(*part);
+    if (operand == nullptr) return {};
+    counts = sum_of(counts, operand->counts);
+    Solids solids = operand->solids;
+    for (TopoDS_Shape& solid : solids) solid = mapped(solid, *placement);
+    return apply_solids(body, solids, context);
+  }
+
+  /// A part that others are made of. It has no parameters, so it is made once, however often it is applied.
+  struct Operand {
+    Solids solids;
+    CellCounts counts;
+  };
+  const Operand* operand_of(const Part& part) {
+    if (const auto known = operands_.find(&part); known != operands_.end()) return &known->second;
+    const CellCounts outside = std::exchange(counts, {});
+    auto folded = fold(part, false);
+    const CellCounts inside = std::exchange(counts, outside);
+    return folded ? &operands_.emplace(&part, Operand{std::move(folded->solids), inside}).first->second : nullptr;
   }
 
   const eval::Evaluation& evaluation_;
   const RealiseOptions& options_;
   SolidContext context_;
+  std::map<const Part*, Operand> operands_;
 };
 
 void place(Body& body, const Affine& world_from_part) {
@@ -215,11 +270,11 @@ std::optional<Realisation> realise(const eval::Evaluation& evaluation, const Par
       context.report(Code::geometry_empty, part.id_in_source, {part.id.text});
       return {};
     }
-    Realisation result{
-        .body = {}, .cells = fold.counts, .clip = std::move(fold.clip), .way = std::move(fold.way)};
+    Realisation result{.body = {}, .cells = fold.counts, .clip = std::move(fold.clip), .way = std::move(fold.way)};
     auto body = folded->body ? std::move(folded->body) : to_body(folded->solids, options, sink);
     if (!body) return {};
     if (!folded->body) body->pieces_volume = folded->pieces_volume;
+    if (options.mesh) clear_triangles(*body, options.run);
     result.body = std::move(*body);
     result.body.fragments = result.cells.fragments;
     result.realise_seconds = seconds_since(start);
@@ -237,7 +292,9 @@ std::optional<Body> realise_macrostructure(const eval::Evaluation& evaluation, c
   const auto solids = shape ? solid_from_shape(*shape, {}, context) : std::nullopt;
   if (!solids) return {};
   try {
-    return to_body(*solids, options, sink);
+    auto body = to_body(*solids, options, sink);
+    if (body && options.mesh) clear_triangles(*body, options.run);
+    return body;
   } catch (const Standard_Failure& failure) {
     context.report(Code::geometry_kernel, macrostructure.id_in_source,
                    {"realising a macrostructure", failure.GetMessageString()});

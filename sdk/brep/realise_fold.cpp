@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "boolean.hpp"
+#include "box_pairs.hpp"
 #include "meso/base/number.hpp"
 #include "point_within.hpp"
 #include "realise_boundary.hpp"
@@ -17,8 +18,19 @@ std::vector<int> owners_of(const Solids& pieces, const Solids& before) {
   if (before.size() <= 1) return owners;
   const Boundary boundary(before);
   for (std::size_t i = 0; i < pieces.size(); ++i)
-    for (const Vec3 p : points_within(pieces[i], 1)) owners[i] = boundary.solid_at(p);
+    for (const Vec3 p : points_within(pieces[i], 8))
+      if ((owners[i] = boundary.solid_at(p)) >= 0) break;
   return owners;
+}
+
+/// Solids that are joined with another: those that keep apart cost nothing.
+std::size_t count_meeting(const Solids& a, const Solids& b) {
+  std::vector<Box3> boxes;
+  for (const Solids* solids : {&a, &b})
+    for (const TopoDS_Shape& solid : *solids) boxes.push_back(box_of(solid));
+  std::vector<bool> meets(boxes.size());
+  visit_meeting_pairs(boxes, [&](std::size_t i, std::size_t k) { meets[i] = meets[k] = true; });
+  return static_cast<std::size_t>(std::ranges::count(meets, true));
 }
 
 }  // namespace
@@ -37,7 +49,10 @@ bool FoldContext::within_budget(std::size_t solids) const {
 }
 
 std::optional<FoldStep> apply_solids(const Solids& body, const Solids& operand, const FoldContext& context) {
-  if (!context.within_budget(body.size() + operand.size())) return {};
+  std::size_t joined = body.size() + operand.size();
+  if (context.apply.operation == ApplyOperation::union_ && joined > context.most_solids())
+    joined = count_meeting(body, operand);
+  if (!context.within_budget(joined)) return {};
   std::optional<Solids> solids;
   switch (context.apply.operation) {
     case ApplyOperation::difference:

@@ -16,7 +16,7 @@
 
 namespace meso::brep {
 
-/// How many triangles still meet others: zero, but where bodies touch or the run was to stop.
+/// How many triangles meet others: zero, but where bodies touch or the run was to stop; then `body` is as it was.
 std::size_t clear_triangles(Body& body, const RunOptions& run);
 
 }  // namespace meso::brep
