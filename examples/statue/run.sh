@@ -4,7 +4,8 @@
 # FOLDER (default: statue-out). MESO and PYTHON name the programs if they are not in the path.
 set -eu
 here=$(cd "$(dirname "$0")" && pwd)
-meso=${MESO:-meso}
+meso=$(command -v "${MESO:-meso}")
+case $meso in /*) ;; *) meso=$PWD/$meso ;; esac
 python=${PYTHON:-python3}
 mkdir -p "${1:-statue-out}"
 cd "${1:-statue-out}"
