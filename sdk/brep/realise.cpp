@@ -5,10 +5,12 @@
 #include <chrono>
 #include <map>
 
+#include "boolean.hpp"
 #include "meso/brep/clear_triangles.hpp"
 #include "meso/brep/instance_map.hpp"
 #include "meso/brep/measure.hpp"
 #include "meso/brep/placement.hpp"
+#include "meso/eval/pattern_reach.hpp"
 #include "realise_boundary.hpp"
 #include "realise_fold.hpp"
 #include "realise_lattice.hpp"
@@ -36,6 +38,16 @@ void keep_largest(Body& body) {
   const auto volume = [](const Solid& solid) { return measure(Body{.solids = {solid}, .fragments = 0}).volume; };
   body.solids = {*std::ranges::max_element(body.solids, {}, volume)};
   body.pieces_volume = 0;
+}
+
+Box3 box_of_all(const Solids& solids) {
+  Box3 all;
+  for (const TopoDS_Shape& solid : solids) {
+    const Box3 one = box_of(solid);
+    all.extend(one.min);
+    all.extend(one.max);
+  }
+  return all;
 }
 
 /// The solid that a vertex or, where all lie on the boundary, the point nearest to the middle of a face is in.
@@ -108,7 +120,8 @@ class PartFold {
     if (apply.pattern) {
       const Pattern* pattern = evaluation_.find_pattern(apply.pattern->text);
       const auto cells = pattern != nullptr ? evaluation_.cells(*pattern, context_.sink) : std::nullopt;
-      if (!cells) return false;
+      if (!cells || !eval::check_reach(evaluation_, *cells, apply, part, box_of_all(state.solids), context_.sink))
+        return false;
       if (is_last && may_be_lattice(apply, state.solids) && try_lattice(state, *cells, context, part.id.text))
         return true;
       if (context_.sink.has_errors()) return false;
