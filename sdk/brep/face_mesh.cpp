@@ -2,6 +2,7 @@
 #include "face_mesh.hpp"
 
 #include <Poly_PolygonOnTriangulation.hxx>
+#include <bit>
 #include <map>
 
 #include "ellipsoid.hpp"
@@ -22,7 +23,8 @@ class FaceMesher {
         geometry_(geometry),
         edge_points_(static_cast<std::size_t>(edges.Extent()) + 1) {}
 
-  void mesh(const TopoDS_Shell& shell) {
+  /// Throws Standard_Failure; false: a face's triangles do not reach its edges.
+  [[nodiscard]] bool mesh(const TopoDS_Shell& shell) {
     for (TopExp_Explorer it(shell, TopAbs_FACE); it.More(); it.Next()) faces_.push_back(TopoDS::Face(it.Current()));
     std::vector<bool> is_plane(faces_.size());
     for (std::size_t f = 0; f < faces_.size(); ++f) is_plane[f] = has_many_loops(geometry_.faces[f]);
@@ -41,9 +43,34 @@ class FaceMesher {
         geometry_.faces[f].mesh = taken_from(faces_[f]);
     for (std::size_t f = 0; f < faces_.size(); ++f)
       if (is_plane[f]) geometry_.faces[f].mesh = between_loops(f);
+    return is_closed();
   }
 
  private:
+  /// Every segment is gone along as often in one direction as in the other: sums of hashes cancel.
+  [[nodiscard]] bool is_closed() const {
+    const auto hash = [](Vec3 p) {
+      std::uint64_t h = 0;
+      for (const double c : {p.x, p.y, p.z})
+        h = std::rotl((h ^ std::bit_cast<std::uint64_t>(c + 0.0)) * 0x9e3779b97f4a7c15u, 29);
+      return h;
+    };
+    std::uint64_t sum = 0;
+    std::vector<std::uint64_t> hashes;
+    for (const FaceTemplate& face : geometry_.faces) {
+      hashes.clear();
+      for (const MeshPoint& p : face.mesh.points) hashes.push_back(hash(p.point));
+      for (const auto& t : face.mesh.triangles)
+        for (std::size_t k = 0; k < 3; ++k) {
+          const std::uint64_t a = hashes[t[k]], b = hashes[t[(k + 1) % 3]];
+          if (a == b) continue;
+          const std::uint64_t mixed = (std::min(a, b) * 0xbf58476d1ce4e5b9u) ^ std::rotl(std::max(a, b), 31);
+          sum += a < b ? mixed : 0 - mixed;
+        }
+    }
+    return sum == 0;
+  }
+
   static bool has_many_loops(const FaceTemplate& face) {
     return face.loops.size() >= many_loops && std::holds_alternative<Plane>(face.surface);
   }
@@ -158,9 +185,22 @@ class FaceMesher {
 
 }  // namespace
 
+// Where the mesher fails at a narrow place, it mostly does not with shorter chords.
 void mesh_faces(const TopoDS_Shell& shell, const MeshTolerance& tolerance, const TopTools_IndexedMapOfShape& edges,
                 const TopTools_IndexedMapOfShape& vertices, Template& geometry) {
-  FaceMesher(tolerance, edges, vertices, geometry).mesh(shell);
+  constexpr int most_attempts = 5;
+  MeshTolerance finer = tolerance;
+  for (int attempt = 1; attempt <= most_attempts; ++attempt) {
+    try {
+      if (FaceMesher(finer, edges, vertices, geometry).mesh(shell)) return;
+    } catch (const Standard_Failure&) {
+      if (attempt == most_attempts) throw;
+    }
+    BRepTools::Clean(shell);
+    finer.deflection_mm /= 3;
+    finer.angle /= 1.6;
+  }
+  throw Standard_Failure("the triangles of a body do not close");
 }
 
 }  // namespace meso::brep
