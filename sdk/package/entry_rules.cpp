@@ -42,6 +42,7 @@ bool is_document_name(std::string_view name) {
 
 std::string name_fault(std::string_view name) {
   if (name.empty()) return "it has no name";
+  if (name.size() > longest_name) return "its name is too long";
   if (name.front() == '/') return "its path is absolute";
   if (name.back() == '/') return "it is a folder; folders come from the names of files";
   for (std::size_t at = 0; at < name.size();) {
@@ -64,15 +65,14 @@ std::string name_fault(std::string_view name) {
 }
 
 std::string EntryNames::add(const std::string& name) {
-  const std::string key = lower(name);
+  const std::string key = lower(name), folder = key + '/';
+  // Folders are looked for and not kept: a name of many short steps would have as many prefixes of its own length.
   for (std::size_t slash = key.find('/'); slash != std::string::npos; slash = key.find('/', slash + 1)) {
-    if (known_.try_emplace(key.substr(0, slash), Kind::folder).first->second == Kind::file)
-      return "one of its folders is the name of a file";
+    if (known_.contains(std::string_view(key).substr(0, slash))) return "one of its folders is the name of a file";
   }
-  const auto [known, is_new] = known_.try_emplace(key, Kind::file);
-  if (is_new) return {};
-  return known->second == Kind::file ? "another entry has this name (A and a count as equal)"
-                                     : "other entries have this name as their folder";
+  const auto below = known_.lower_bound(folder);
+  if (below != known_.end() && below->starts_with(folder)) return "other entries have this name as their folder";
+  return known_.insert(key).second ? "" : "another entry has this name (A and a count as equal)";
 }
 
 }  // namespace meso::package

@@ -2,7 +2,7 @@
 #pragma once
 // Which names may stand in a package, the same for reading and writing (docs/specification/package.md). Private.
 
-#include <map>
+#include <set>
 #include <string>
 #include <string_view>
 
@@ -12,6 +12,7 @@ inline constexpr std::string_view media_type = "application/vnd.meso+zip";
 inline constexpr std::string_view media_type_entry = "mimetype";
 inline constexpr std::string_view manifest_entry = "manifest.sha256";
 inline constexpr std::string_view thumbnail_entry = "thumbnail.png";
+inline constexpr std::size_t longest_name = 1024;  ///< bytes
 
 /// Of the document or of a file that it refers to.
 [[nodiscard]] bool is_reserved(std::string_view name);
@@ -29,8 +30,7 @@ class EntryNames {
   [[nodiscard]] std::string add(const std::string& name);
 
  private:
-  enum class Kind { file, folder };
-  std::map<std::string, Kind> known_;  // in lower case
+  std::set<std::string, std::less<>> known_;  // in lower case
 };
 
 }  // namespace meso::package

@@ -105,6 +105,28 @@ TEST_F(HostilePackage, NamesThatAreNoFilesOfAFolder) {
   }
 }
 
+TEST_F(HostilePackage, LongNames) {
+  std::string steps;
+  while (steps.size() < 1022) steps += "a/";
+  DiagnosticSink sink;
+  write({{steps + "bc", "x"}});
+  EXPECT_TRUE(Package::read(file_, {}, sink));
+  write({{steps + "bcd", "x"}});
+  EXPECT_THAT(fault(), testing::HasSubstr("its name is too long"));
+  write({{std::string(60'000, 'b'), "x"}});
+  EXPECT_LT(fault().size(), 2000U);
+  // A name and another's folder, whichever comes first.
+  write({{"x-y", "x"}, {"x/b", "x"}, {"X", "x"}});
+  EXPECT_THAT(fault(), testing::HasSubstr("other entries have this name as their folder"));
+}
+
+TEST_F(HostilePackage, ReadingTheDirectoryStops) {
+  write({{"folder/", "x"}});
+  RunOptions run;
+  run.cancelled = [] { return true; };
+  EXPECT_THAT(fault(run), testing::HasSubstr("CANCELLED"));
+}
+
 TEST_F(HostilePackage, TwoEntriesOfOneName) {
   write({{"b.step", "x"}, {"c.step", "x"}});
   std::string patched = bytes();

@@ -52,7 +52,11 @@ std::optional<Resource> open_resource(const std::filesystem::path& file, [[maybe
     if (container == file || !is_package(container) || !std::filesystem::is_regular_file(container, error)) continue;
 #ifdef MESO_WITH_PACKAGES
     const auto package = Package::read(container, run, sink);
-    return package ? package->find(file.lexically_relative(container).generic_string()) : std::nullopt;
+    if (!package) return std::nullopt;
+    const std::string name = file.lexically_relative(container).generic_string();
+    auto found = package->find(name);
+    if (!found) sink.report({.code = Code::href_outside, .where = {.file = container.string()}, .args = {name}});
+    return found;
 #else
     sink.report({.code = Code::package_not_built, .args = {container.string()}});
     return std::nullopt;

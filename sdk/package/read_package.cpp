@@ -43,9 +43,15 @@ class PackageReader {
   }
   bool unreadable(std::string why) { return fault(Code::package_unreadable, {std::move(why)}); }
   bool bad_entry(std::string_view name, std::string why) {
-    std::string shown(name);
+    std::string shown(name.substr(0, package::longest_name));
     for (char& c : shown) c = static_cast<unsigned char>(c) < 32 || c == 127 ? '?' : c;
     return fault(Code::package_entry, {std::move(shown), std::move(why)});
+  }
+
+  bool stopped() {
+    if (!run_.should_stop()) return false;
+    sink_.report({.code = run_.out_of_time() ? Code::limit_time : Code::cancelled});
+    return true;
   }
 
   bool open() {
@@ -74,6 +80,7 @@ class PackageReader {
     EntryNames names;
     std::uint64_t total = 0;
     for (zip_uint64_t i = 0; i < count; ++i) {
+      if (stopped()) return false;
       zip_stat_t stat;
       const char* name = zip_get_name(archive_.get(), i, ZIP_FL_ENC_RAW);
       if (name == nullptr || zip_stat_index(archive_.get(), i, ZIP_FL_ENC_RAW, &stat) != 0)
@@ -110,10 +117,7 @@ class PackageReader {
       auto bytes = std::make_shared<std::string>();
       // The library ends with an error where the bytes are more or fewer than stated, or have another CRC.
       for (zip_int64_t got = 1; got > 0;) {
-        if (run_.should_stop()) {
-          sink_.report({.code = run_.out_of_time() ? Code::limit_time : Code::cancelled});
-          return false;
-        }
+        if (stopped()) return false;
         const std::size_t had = bytes->size();
         bytes->resize(had + std::min<std::uint64_t>(block, entry.size - had + 1));
         got = zip_fread(stream.get(), bytes->data() + had, bytes->size() - had);

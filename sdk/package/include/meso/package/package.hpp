@@ -8,7 +8,8 @@
 //
 // Reading inflates every entry into memory, checks its CRC, its name and its sum, and refuses the package as a whole at
 // the first fault: nothing of a bad package is used. More than RunOptions::max_memory_bytes are refused before the
-// first byte is inflated. Deterministic: equal files give equal packages. Thread rule: a Package is immutable.
+// first byte is inflated. Deterministic: one build gives equal packages of equal files. Thread rule: a Package is
+// immutable.
 
 #include <cstdint>
 #include <map>
