@@ -11,6 +11,8 @@
 #include <system_error>
 #include <utility>
 
+#include "meso/base/unfinished_files.hpp"
+
 namespace meso {
 namespace {
 
@@ -50,7 +52,11 @@ std::optional<OutputFile> OutputFile::create(const std::string& path, ExistingFi
     const fs::path target = fs::weakly_canonical(path, error);
     file.target_ = error ? path : target.string();
     file.temporary_ = temporary_beside(file.target_);
-    file.descriptor_ = ::open(file.temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    const auto open = [&] {
+      file.descriptor_ = ::open(file.temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+      return file.descriptor_ >= 0;
+    };
+    (void)make_unfinished(file.temporary_, open);
   }
   if (file.descriptor_ < 0) {
     report_failure(sink, path, errno);
@@ -73,7 +79,7 @@ OutputFile::~OutputFile() { discard(); }
 
 void OutputFile::discard() {
   if (descriptor_ >= 0) ::close(std::exchange(descriptor_, -1));
-  if (!temporary_.empty()) ::unlink(temporary_.c_str());
+  if (!temporary_.empty()) finish_unfinished(temporary_, [&] { return ::unlink(temporary_.c_str()), true; });
   temporary_.clear();
 }
 
@@ -110,16 +116,19 @@ bool OutputFile::commit(DiagnosticSink& sink) {
 }
 
 bool OutputFile::publish(DiagnosticSink& sink) {
-  if (existing_ == ExistingFile::refuse) {
+  const auto put_in_place = [&] {
     // A link fails where a file has appeared meanwhile; a rename would replace it.
-    if (::link(temporary_.c_str(), target_.c_str()) == 0) return true;
-    if (errno == EEXIST) {
-      sink.report({.code = Code::write_exists, .args = {path_}});
-      return false;
+    if (existing_ == ExistingFile::refuse) {
+      if (::link(temporary_.c_str(), target_.c_str()) == 0) return ::unlink(temporary_.c_str()), true;
+      if (errno == EEXIST) return false;
     }
-  }
-  if (::rename(temporary_.c_str(), target_.c_str()) != 0) {
-    report_failure(sink, path_, errno);
+    return ::rename(temporary_.c_str(), target_.c_str()) == 0;
+  };
+  if (!finish_unfinished(temporary_, put_in_place)) {
+    if (existing_ == ExistingFile::refuse && errno == EEXIST)
+      sink.report({.code = Code::write_exists, .args = {path_}});
+    else
+      report_failure(sink, path_, errno);
     return false;
   }
   temporary_.clear();

@@ -2,11 +2,14 @@
 #include "meso/base/output_file.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+
+#include "meso/base/unfinished_files.hpp"
 
 namespace meso {
 namespace {
@@ -106,6 +109,27 @@ TEST_F(OutputFileTest, ReportsAMissingFolder) {
   EXPECT_FALSE(OutputFile::create(path("no/such/a"), ExistingFile::replace, sink_));
   ASSERT_EQ(sink_.error_count(), 1u);
   EXPECT_EQ(sink_.diagnostics()[0].code, Code::write_failed);
+}
+
+// For the rest of its process nothing can be made: so in one of its own.
+TEST_F(OutputFileTest, NothingIsLeftOrMadeWhereTheProcessEnds) {
+  fs::create_directory(folder_ / "there");
+  make("there/real", "old");
+  fs::create_symlink("there/real", path("link"));
+  const auto end = [&] {
+    auto file = OutputFile::create(path("link"), ExistingFile::replace, sink_);
+    const std::string folder = path("folder");
+    const bool made = file && file->write("new") &&
+                      make_unfinished(folder, [&] { return ::mkdir(folder.c_str(), 0777) == 0; }) &&
+                      OutputFile::create(folder + "/b", ExistingFile::refuse, sink_)->commit(sink_);
+    remove_unfinished();
+    const bool later = OutputFile::create(path("c"), ExistingFile::replace, sink_) || file->commit(sink_);
+    ::_exit(!made ? 1 : later ? 2 : 0);
+  };
+  EXPECT_EXIT(end(), testing::ExitedWithCode(0), "");
+  EXPECT_EQ(content(path("there/real")), "old");
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder_ / "there"), fs::directory_iterator()), 1);
+  EXPECT_EQ(files(), 2);
 }
 
 TEST_F(OutputFileTest, ReportsAFullDisk) {

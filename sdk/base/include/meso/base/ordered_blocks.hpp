@@ -5,7 +5,7 @@
 //   const WrittenBlocks done = write_in_order(blocks, jobs, sink, [&](std::size_t block, ByteBuffer& out) { ... });
 //
 // The bytes do not depend on the number of threads. Each thread holds one block, so memory is `jobs` blocks. Once the
-// sink has failed no further block is made. What `make` throws is thrown again here.
+// sink has failed no further block is made. What `make` or the sink throws is thrown again here.
 
 #include <atomic>
 #include <condition_variable>
@@ -59,26 +59,26 @@ template <typename Make>
   // Blocks are taken in order: the one to be written next is always with a thread that does not wait.
   for_each_block(blocks, threads, [&](std::size_t block, std::size_t thread) {
     ByteBuffer& buffer = buffers[thread];
-    buffer.clear();
-    std::unique_lock lock(mutex);
-    if (is_over) return;
-    lock.unlock();
     try {
+      buffer.clear();
+      std::unique_lock lock(mutex);
+      if (is_over) return;
+      lock.unlock();
       make(block, buffer);
-    } catch (...) {
       lock.lock();
+      turned.wait(lock, [&] { return turn == block || is_over; });
+      if (is_over) return;
+      done.complete = sink.write(buffer.view());
+      done.bytes += buffer.size();
+      is_over = !done.complete;
+      ++turn;
+      turned.notify_all();
+    } catch (...) {
+      const std::lock_guard lock(mutex);
       is_over = true;
       turned.notify_all();
       throw;
     }
-    lock.lock();
-    turned.wait(lock, [&] { return turn == block || is_over; });
-    if (is_over) return;
-    done.complete = sink.write(buffer.view());
-    done.bytes += buffer.size();
-    is_over = !done.complete;
-    ++turn;
-    turned.notify_all();
   });
   return done;
 }
