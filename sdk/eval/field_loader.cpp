@@ -206,14 +206,13 @@ class FieldLoader {
       const FieldComponent& component = components()[c];
       const Place place{component.id_in_source, "unit"};
       const std::string stated = component.unit.value_or("");
-      if (!table.columns.empty()) {
-        const std::string& in_file = table.columns[source_->columns_[c].column].unit;
-        if (component.unit && !in_file.empty() && in_file != stated)
-          return fault(Code::field_unit, place, {component.name.text, stated, "the file says '" + in_file + "'"});
-      }
+      const std::string in_file = table.columns.empty() ? "" : table.columns[source_->columns_[c].column].unit;
+      if (component.unit && !in_file.empty() && in_file != stated)
+        return fault(Code::field_unit, place, {component.name.text, stated, "the file says '" + in_file + "'"});
       const KnownUnit* unit = find_unit(stated);
       if (unit != nullptr) source_->columns_[c].factor = unit->factor / (unit->is_length ? data_.millimeters() : 1);
-      if (component.role == ComponentRole::position && !position_unit(component, unit, position++)) return false;
+      if (component.role == ComponentRole::position && !position_unit(component, unit, in_file, position++))
+        return false;
       auto& whole = component.role == ComponentRole::vector ? of_vector : of_tensor;
       if (component.role != ComponentRole::vector && component.role != ComponentRole::tensor) continue;
       if (whole && *whole != stated)
@@ -223,11 +222,19 @@ class FieldLoader {
     }
     return true;
   }
-  bool position_unit(const FieldComponent& component, const KnownUnit* unit, std::size_t position) const {
+  bool position_unit(const FieldComponent& component, const KnownUnit* unit, const std::string& in_file,
+                     std::size_t position) const {
     const AxisKind kind = system()->axes()[position].kind;
-    if (!component.unit || kind == AxisKind::scalar) return true;
     const bool needs_length = kind != AxisKind::circular;
-    if (unit != nullptr && unit->is_length == needs_length) return true;
+    const auto is_needed = [&](const KnownUnit& u) { return u.is_length == needs_length; };
+    if (!component.unit) {
+      const KnownUnit* found = find_unit(in_file);
+      if (found == nullptr || (is_needed(*found) && found->factor == (needs_length ? data_.millimeters() : 1)))
+        return true;
+      return fault(Code::field_unit, {component.id_in_source, {}},
+                   {component.name.text, in_file, "only the file says so, state it here"});
+    }
+    if (kind == AxisKind::scalar || (unit != nullptr && is_needed(*unit))) return true;
     return fault(Code::field_unit, {component.id_in_source, "unit"},
                  {component.name.text, *component.unit, needs_length ? "a length is needed" : "an angle is needed"});
   }

@@ -8,6 +8,7 @@
 #include <random>
 
 #include "document_text.hpp"
+#include "meso/base/number.hpp"
 #include "meso/eval/pattern_reach.hpp"
 #include "meso/fields/base64.hpp"
 
@@ -233,6 +234,31 @@ TEST(FieldFaults, OneDiagnosticEach) {
                  "<component name='u' role='vector' unit='mm'/><component name='v' role='vector' unit='m'/><points/>",
              {0, 0, 0, 1, 2}),
       ElementsAre("FIELD_UNIT"));
+}
+
+// Of a position the unit of the file is never dropped: it is stated in the document too, or changes nothing.
+TEST(Fields, PositionsInAnotherUnitAreNotTakenForTheDocuments) {
+  const std::filesystem::path folder = testing::TempDir() + "meso_field_units";
+  std::filesystem::create_directories(folder);
+  const auto run = [&](const std::string& heading, const std::string& unit) {
+    std::ofstream(folder / "values.csv") << heading << "\n1,2,3\n";
+    DiagnosticSink sink;
+    auto read = read_document(meso_text(pattern_text("<scatter field='f'/>", cell, "",
+                                                     field("f", 1, position(unit) + "<points/>",
+                                                           "<external href='values.csv' format='csv'/>"))),
+                              (folder / "test.meso").string(), sink);
+    auto checked = read ? validate(std::move(read->document), std::move(read->source), folder, sink) : std::nullopt;
+    const auto evaluation = checked ? Evaluation::make(*checked, {}, sink) : std::nullopt;
+    const auto cells = evaluation ? evaluation->cells(*evaluation->find_pattern("p"), sink) : std::nullopt;
+    if (!cells) return render(sink.diagnostics().at(0));
+    return format_number(cells_of(*cells).at(0).world_from_cell.translation.x);
+  };
+  EXPECT_THAT(run("x [m],y [m],z [m]", ""), testing::HasSubstr("FIELD_UNIT"));
+  EXPECT_THAT(run("x,y [in],z", ""), testing::HasSubstr("'y' has the unit 'in'; only the file says so"));
+  EXPECT_THAT(run("x [deg],y,z", ""), testing::HasSubstr("FIELD_UNIT"));
+  EXPECT_EQ(run("x [m],y [m],z [m]", "m"), "1000");
+  EXPECT_EQ(run("x [mm],y [mm],z", ""), "1");
+  EXPECT_EQ(run("x [node],y,z", ""), "1");
 }
 
 TEST(Fields, FilesAreReadCheckedAndMapped) {
