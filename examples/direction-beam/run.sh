@@ -17,5 +17,5 @@ cmp "$out/stress.raw" "$here/stress.raw" || echo "stress.raw: another solution t
 "$meso" verify --deep "$out/direction-beam.meso"
 "$meso" convert "$out/direction-beam.meso" "$out/part.step"
 "$meso" convert "$out/direction-beam.meso" "$out/part.stl" --deflection 0.02mm
-"$python" -B "$here/check.py" "$meso" "$out"
+"$python" -B "$here/check.py" "$meso" --part "$out"
 "$meso" compare "$out/direction-beam.meso"

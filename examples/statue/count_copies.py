@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Which placed copies lie inside the statue, by numpy alone: count_copies.py statue.stl cells.csv SCALE CLEARANCE
+"""Which placed copies lie inside the statue, by numpy alone: count_copies.py statue.stl cells.csv SCALE CLEARANCE EXPECTED
 
 `cells.csv` is what `meso eval statue.meso` writes: where each copy stands. A copy is inside if its first point is (the
 winding number, by solid angles) and no point of its surface is nearer than CLEARANCE to the statue's: distances of all
 corners from all triangles and of all edges from all edges that come near, both ways, and edges through triangles.
-Nothing here is shared with the engine. Prints the number of copies, and the smallest distance of those inside and the
+Nothing here is shared with the engine. Exit 1 if the copies are not EXPECTED many. Prints the number of copies, and the smallest distance of those inside and the
 largest of those that are not: the two must not be near CLEARANCE, or the answer would hang on rounding.
 """
 import csv
@@ -90,6 +90,9 @@ def distance(s, t, reach):
 
 
 def main():
+    if len(sys.argv) != 6:
+        sys.exit(__doc__)
+    expected = int(sys.argv[5])
     statue, cells, scale, clearance = read_stl(sys.argv[1]), sys.argv[2], float(sys.argv[3]), float(sys.argv[4])
     copy = statue * scale
     inside, nearest_in, farthest_out = [], np.inf, 0.0
@@ -111,6 +114,8 @@ def main():
             farthest_out = max(farthest_out, d)
     print(f'{len(inside)} of {len(rows)} copies inside; nearest of them {nearest_in:.6f} mm from the surface, '
           f'farthest of those left out {farthest_out:.6f} mm')
+    if len(inside) != expected:
+        sys.exit(f'FAIL: {expected} were expected')
 
 
 if __name__ == '__main__':

@@ -4,7 +4,7 @@
 # FOLDER (default: statue-out). MESO and PYTHON name the programs if they are not in the path.
 set -eu
 here=$(cd "$(dirname "$0")" && pwd)
-meso=$(command -v "${MESO:-meso}")
+meso=$(command -v "${MESO:-meso}") || { echo "run.sh: there is no program '${MESO:-meso}'; set MESO to where it is" >&2; exit 1; }
 case $meso in /*) ;; *) meso=$PWD/$meso ;; esac
 python=${PYTHON:-python3}
 mkdir -p "${1:-statue-out}"
@@ -20,7 +20,15 @@ fi
 # The body: 4 596 facets of 52 000, as triangles and as exact plane faces.
 [ -f statue.stl ] || "$python" "$here/decimate.py" armadillo.off statue.stl 4596
 "$meso" verify statue.stl
-if command -v admesh > /dev/null; then admesh statue.stl | grep -E 'facets|disconnected|holes|parts'; fi
+if command -v admesh > /dev/null; then
+  admesh statue.stl > admesh.txt
+  for line in 'Total disconnected facets *: *0 +0 *$' 'Number of parts *: *1 ' 'Degenerate facets *: *0 *$' 'Edges fixed *: *0 *$' \
+    'Facets reversed *: *0 *$' 'Backwards edges *: *0 *$' 'Normals fixed *: *0 *$'; do
+    grep -aqE "^$line" admesh.txt || { echo "run.sh: admesh does not say: $line" >&2; exit 1; }
+  done
+else
+  echo "admesh is not installed: the body is not looked at by it"
+fi
 for body in stl step; do
   case $body in stl) import='href="statue.stl" unit="millimeter"' suffix=-stl ;; step) import='href="statue.step"' suffix= ;; esac
   sed "s|@BODY@|$import|" "$here/statue.meso.in" > "statue$suffix.meso"
@@ -30,14 +38,16 @@ sed '/<apply/,/<\/validation>/d' statue-stl.meso > body.meso
 
 # The copies inside it, exactly and as triangles.
 "$meso" convert statue.meso hollow.step
-"$meso" convert statue-stl.meso hollow.stl
-"$meso" verify statue-stl.meso
+"$meso" convert statue-stl.meso hollow.stl --json > hollow.json
+"$meso" verify --deep statue-stl.meso
+"$meso" verify --deep statue.meso
 "$meso" verify hollow.stl
 "$meso" compare statue.meso statue-stl.meso
 
 # How many copies there should be, counted without the engine; then one copy, small enough for other programs.
 "$meso" eval statue-stl.meso cells.csv
-"$python" "$here/count_copies.py" statue.stl cells.csv 0.08333333333333333 0.25
+"$python" "$here/count_copies.py" statue.stl cells.csv 0.08333333333333333 0.25 \
+  "$("$python" -c 'import json; print(json.load(open("hollow.json"))["cells"]["kept"])')"
 "$meso" convert statue-stl.meso one-copy.step --set clearance=14mm
 
 # Pictures, standing.
