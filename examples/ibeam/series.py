@@ -61,6 +61,7 @@ def draw(rows, out):
     axes[0].set(xscale="log", yscale="log")
     for axis in axes[1:]:
         axis.set_ylim(bottom=0)
+        axis.locator_params(axis="x", nbins=4)
     axes[0].legend(fontsize=8)
     figure.tight_layout()
     figure.savefig(out)
