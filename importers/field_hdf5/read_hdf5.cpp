@@ -1,7 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "meso/import_field_hdf5/read_hdf5.hpp"
 
+#include <fcntl.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
 #include <algorithm>
+#include <array>
+#include <cerrno>
+#include <csignal>
+#include <utility>
 
 #include "meso/hdf5/handle.hpp"
 
@@ -21,28 +30,91 @@ struct DataSet {
   std::vector<std::string> components, units;
 };
 
-/// Empty where there is no such attribute of texts, or a larger one than names of columns are.
-std::vector<std::string> texts_of(hid_t object, const char* attribute) {
-  if (H5Aexists(object, attribute) <= 0) return {};
+using Texts = std::vector<std::string>;
+
+/// Ends every text with a zero byte.
+bool write_all(int out, const Texts& texts) {
+  std::string bytes;
+  for (const std::string& text : texts) bytes += text.substr(0, text.find('\0')) + '\0';
+  if (bytes.size() > most_text_bytes) return true;  // more than names of columns are: none
+  std::size_t done = 0;
+  while (done < bytes.size()) {
+    const ssize_t wrote = ::write(out, bytes.data() + done, bytes.size() - done);
+    if (wrote < 0) return false;
+    done += static_cast<std::size_t>(wrote);
+  }
+  return true;
+}
+
+Texts read_all(int in) {
+  Texts result;
+  std::string text;
+  std::array<char, 4096> block{};
+  for (;;) {
+    const ssize_t count = ::read(in, block.data(), block.size());
+    if (count < 0 && errno == EINTR) continue;
+    if (count <= 0) return result;
+    for (const char c : std::string_view(block.data(), static_cast<std::size_t>(count))) {
+      if (c != '\0')
+        text += c;
+      else
+        result.push_back(std::exchange(text, {}));
+    }
+  }
+}
+
+bool convert_variable(hid_t attribute, hid_t type, std::size_t count, int out) {
+  std::vector<char*> texts(count, nullptr);
+  if (H5Aread(attribute, type, texts.data()) < 0) return false;
+  Texts copies;
+  for (const char* text : texts) copies.emplace_back(text != nullptr ? text : "");
+  return write_all(out, copies);
+}
+
+/// HDF5 1.10 trusts the lengths of damaged texts of variable length: it ends the process, or never ends. So a process
+/// of its own reads them. It calls nothing but HDF5, whose lock this thread holds, and `write`. Absent where it could
+/// not.
+std::optional<Texts> variable_texts(hid_t attribute, hid_t type, std::size_t count) {
+  constexpr rlim_t seconds = 1;
+  int ends[2];
+  if (::pipe2(ends, O_CLOEXEC) != 0) return std::nullopt;
+  const pid_t child = ::fork();
+  if (child == 0) {
+    for (const int signal : {SIGSEGV, SIGBUS, SIGABRT, SIGFPE}) std::signal(signal, SIG_DFL);
+    const rlimit none{0, 0}, time{seconds, seconds};
+    ::setrlimit(RLIMIT_CORE, &none);
+    ::setrlimit(RLIMIT_CPU, &time);
+    ::_exit(convert_variable(attribute, type, count, ends[1]) ? 0 : 1);
+  }
+  ::close(ends[1]);
+  std::optional<Texts> result;
+  int status = -1;
+  if (child > 0) {
+    result = read_all(ends[0]);
+    while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
+    }
+  }
+  ::close(ends[0]);
+  if (status != 0) return std::nullopt;
+  return result;
+}
+
+/// Empty where there is no such attribute of texts, or a larger one than names of columns are; absent where it is
+/// damaged.
+std::optional<Texts> texts_of(hid_t object, const char* attribute) {
+  Texts result;
+  if (H5Aexists(object, attribute) <= 0) return result;
   const Handle a(H5Aopen(object, attribute, H5P_DEFAULT), H5Aclose);
-  if (!a) return {};
+  if (!a) return std::nullopt;
   const Handle space(H5Aget_space(a.id()), H5Sclose), type(H5Aget_type(a.id()), H5Tclose);
   const hssize_t count = H5Sget_simple_extent_npoints(space.id());
   const std::size_t size = H5Tget_size(type.id());
   if (count < 1 || H5Tget_class(type.id()) != H5T_STRING || size == 0 ||
       static_cast<std::size_t>(count) > most_text_bytes / size)
-    return {};
-  std::vector<std::string> result;
-  if (H5Tis_variable_str(type.id()) > 0) {
-    const Handle memory(H5Tcopy(type.id()), H5Tclose);
-    std::vector<char*> texts(static_cast<std::size_t>(count), nullptr);
-    if (H5Aread(a.id(), memory.id(), texts.data()) < 0) return {};
-    for (const char* text : texts) result.emplace_back(text != nullptr ? text : "");
-    H5Dvlen_reclaim(memory.id(), space.id(), H5P_DEFAULT, texts.data());
     return result;
-  }
+  if (H5Tis_variable_str(type.id()) > 0) return variable_texts(a.id(), type.id(), static_cast<std::size_t>(count));
   std::string bytes(size * static_cast<std::size_t>(count), '\0');
-  if (H5Aread(a.id(), type.id(), bytes.data()) < 0) return {};
+  if (H5Aread(a.id(), type.id(), bytes.data()) < 0) return std::nullopt;
   for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
     std::string text = bytes.substr(i * size, size);
     text.resize(std::min(text.find('\0'), text.size()));
@@ -216,9 +288,17 @@ class Hdf5Reader {
     }
     hsize_t size[2]{0, 1};
     H5Sget_simple_extent_dims(space.id(), size, nullptr);
-    auto components = texts_of(set.id(), "components");
-    auto units = texts_of(set.id(), H5Aexists(set.id(), "unit") > 0 ? "unit" : "units");
-    sets_.push_back({path, std::move(set), std::move(type), size[0], size[1], std::move(components), std::move(units)});
+    std::optional<Texts> texts[2];
+    const char* const attributes[]{"components", H5Aexists(set.id(), "unit") > 0 ? "unit" : "units"};
+    for (std::size_t i = 0; i < 2; ++i) {
+      texts[i] = texts_of(set.id(), attributes[i]);
+      if (texts[i]) continue;
+      report(Code::field_file_truncated,
+             {std::string("in the attribute '") + attributes[i] + "' of '" + path + "', or it is damaged there"});
+      return false;
+    }
+    sets_.push_back(
+        {path, std::move(set), std::move(type), size[0], size[1], std::move(*texts[0]), std::move(*texts[1])});
     return true;
   }
 

@@ -134,6 +134,18 @@ TEST(Hdf5Faults, SizesAreLimited) {
   EXPECT_TRUE(table->columns.empty());
 }
 
+// The library itself goes on for ever with the first of these, and ends the process with others.
+TEST(Hdf5Faults, DamagedTextsOfVariableLengthEndNothing) {
+  const std::string whole = bytes_of(fixture("layouts.h5")), damaged = testing::TempDir() + "damaged_texts.h5";
+  const std::size_t heap = whole.find("GCOL"), length = whole.find("szz", heap) - 8;
+  for (const std::uint64_t wrong : {std::uint64_t{3000}, std::uint64_t{1} << 40, ~std::uint64_t{0}}) {
+    std::string bytes = whole;
+    for (std::size_t i = 0; i < 8; ++i) bytes[length + i] = static_cast<char>(wrong >> (8 * i) & 0xFF);
+    std::ofstream(damaged, std::ios::binary) << bytes;
+    EXPECT_THAT(fault_of(damaged, "/named"), testing::HasSubstr("attribute 'components' of '/named'")) << wrong;
+  }
+}
+
 TEST(Hdf5Faults, TheLibraryPrintsNothing) {
   testing::internal::CaptureStderr();
   const std::string damaged = testing::TempDir() + "damaged.h5";
