@@ -340,8 +340,13 @@ class Outputs(CommandTest):
         made_elsewhere = self.file("scan/scan.meso", document(macrostructures='<macrostructures><macrostructure id="m"><import href="scan.step"/></macrostructure></macrostructures>'))
         self.expect(3, "compare", made_elsewhere, says="HREF_NOT_FOUND")
         self.file("scan/run.sh", "")
-        done = self.expect(0, "compare", made_elsewhere, self.folder / "scan" / "gone.meso", self.folder / "good.meso", says="COMPARE_NOT_MADE")
-        self.assertRegex(done.stdout.decode(), r"(?s)good .*\nscan +not made; run .*/scan/run.sh .*/scan\ngone +not made")
+        made_by_script, mistyped = self.folder / "scan" / "made.meso", self.folder / "scan" / "maed.meso"
+        self.file("scan/made.meso.in", "")
+        done = self.expect(0, "compare", made_by_script, self.folder / "good.meso", says="COMPARE_NOT_MADE")
+        self.assertRegex(done.stdout.decode(), r"(?s)good .*\nmade +not made; run .*/scan/run.sh .*/scan\n")
+        self.expect(3, "compare", made_elsewhere, says="HREF_NOT_FOUND")
+        self.expect(3, "compare", mistyped, says="FILE_NOT_FOUND")
+        self.expect(3, "compare", self.folder / ("n" * 300 + ".meso"), says="error")
         self.expect(2, "verify", self.folder / "good.meso", says="--deep")
         failed = self.expect(6, "convert", self.file("a.meso", document(count="10^12")), self.out("b.step"), "--json")
         self.assertEqual(json.loads(failed.stdout)["diagnostics"][0]["code"], "LIMIT_CELLS")
@@ -437,6 +442,7 @@ class Packages(CommandTest):
         self.assertEqual(self.expect(0, "field", "info", package / "stress.csv").stdout,
                          self.expect(0, "field", "info", source / "stress.csv").stdout)
         self.expect(3, "field", "info", package / "nothing.csv", says="IMPORT_UNREADABLE")
+        self.expect(1, "field", "info", package / ".." / "stress.csv", says="HREF_OUTSIDE")
 
     def test_packages_that_are_refused(self):
         package = self.packed_beam()

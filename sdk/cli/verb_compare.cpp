@@ -40,19 +40,21 @@ Json row_json(const ComparisonRow& r) {
           {"seconds", seconds_json(r.seconds)}};
 }
 
-/// A case whose files are made by its own script, and are not there.
+/// A document that is made, by the script run.sh in its folder from a form `<document>.in`, and is not there.
 struct NotMade {
   fs::path document;
-  std::string command, missing;
+  std::string command;
 };
 std::optional<NotMade> not_made(const fs::path& document) {
   const fs::path folder = document.has_parent_path() ? document.parent_path() : fs::path("."),
                  script = folder / "run.sh";
-  NotMade out{document, script.string() + " " + folder.string(), operations::missing_file(document)};
-  return !out.missing.empty() && fs::exists(script) ? std::optional(std::move(out)) : std::nullopt;
+  std::error_code error;
+  const bool is_made = fs::exists(document.string() + ".in", error) && fs::exists(script, error);
+  if (!is_made || fs::exists(document, error)) return std::nullopt;
+  return NotMade{document, script.string() + " " + folder.string()};
 }
 Json row_json(const NotMade& r) {
-  return {{"name", r.document.stem().string()}, {"missing", r.missing}, {"madeBy", r.command}};
+  return {{"name", r.document.stem().string()}, {"missing", r.document.filename().string()}, {"madeBy", r.command}};
 }
 
 void print_table(const std::vector<ComparisonRow>& rows) {
@@ -186,7 +188,7 @@ int compare_verb(Run& run, const CompareArguments& arguments) {
     if (auto row = not_made(file)) {
       run.sink.report({.code = Code::compare_not_made,
                        .where = {.file = file.string()},
-                       .args = {file.string(), row->missing, row->command}});
+                       .args = {file.string(), file.filename().string(), row->command}});
       missing.push_back(std::move(*row));
       continue;
     }

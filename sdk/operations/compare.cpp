@@ -7,7 +7,6 @@
 #include "meso/brep/triangles.hpp"
 #include "meso/export_step/write_step.hpp"
 #include "meso/export_stl/write_stl.hpp"
-#include "meso/model/walk.hpp"
 #include "meso/package/open_document.hpp"
 #include "meso/package/package.hpp"
 #include "meso/package/referenced_files.hpp"
@@ -92,21 +91,6 @@ std::optional<ComparisonRow> compare(const fs::path& document, const MakeOptions
   if (!packed) return std::nullopt;
   row.packed = packed->bytes;
   return row;
-}
-
-std::string missing_file(const fs::path& document) {
-  if (!fs::exists(document)) return document.filename().string();
-  DiagnosticSink told_by_compare;
-  const auto opened = open_document(document, {}, told_by_compare);
-  std::string missing;
-  if (!opened) return missing;
-  walk(opened->document, [&](const Element&, std::string_view, const auto& value) {
-    if constexpr (std::is_same_v<std::decay_t<decltype(value)>, Href>) {
-      const auto resource = opened->resources->find(value.text);
-      if (missing.empty() && resource && !resource->exists()) missing = value.text;
-    }
-  });
-  return missing;
 }
 
 std::optional<std::string> document_with_parameter(const fs::path& document, const std::string& id,

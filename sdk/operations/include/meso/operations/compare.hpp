@@ -32,9 +32,6 @@ struct ComparisonRow {
 [[nodiscard]] std::optional<ComparisonRow> compare(const std::filesystem::path& document, const MakeOptions& options,
                                                    DiagnosticSink& sink);
 
-/// The document, or else the first file that it refers to, if there is no such file; empty: all are there.
-[[nodiscard]] std::string missing_file(const std::filesystem::path& document);
-
 /// The document with the value of parameter `id` replaced: a copy that differs in nothing else, byte for byte. Empty
 /// (with a diagnostic) if there is no such parameter.
 [[nodiscard]] std::optional<std::string> document_with_parameter(const std::filesystem::path& document,
