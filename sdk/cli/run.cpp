@@ -139,6 +139,7 @@ const Diagnostic* Run::first_error() const {
 }
 
 int Run::finish() {
+  (void)claim_answer();
   explain_stop();
   print_diagnostics();
   const Diagnostic* error = first_error();
@@ -153,11 +154,12 @@ void Run::explain_stop() {
 }
 
 int Run::finish(Json report) {
+  const bool is_first = claim_answer();
   explain_stop();
   if (const Diagnostic* error = first_error()) report["error"] = error_json(*error);
   report["diagnostics"] = diagnostics_json(sink);
   const int code = finish();
-  if (flags.json && claim_answer()) {
+  if (flags.json && is_first) {
     fmt::print("{}\n", report.dump(2, ' ', false, Json::error_handler_t::replace));
     std::fflush(stdout);
   }

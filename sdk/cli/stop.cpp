@@ -2,86 +2,105 @@
 #include "stop.hpp"
 
 #include <fcntl.h>
+#include <poll.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <atomic>
+#include <charconv>
 #include <chrono>
+#include <climits>
 #include <csignal>
-#include <cstdio>
-#include <mutex>
-#include <sstream>
+#include <string_view>
 #include <thread>
-#include <vector>
 
+#include "meso/base/unfinished_files.hpp"
 #include "run.hpp"
 
 namespace meso::cli {
 namespace {
 
+enum class Speaker { nobody, work, watch };
+
 std::atomic<bool> stop{false};
-std::atomic<bool> in_json{false}, answered{false};
+std::atomic<bool> in_json{false};
+std::atomic<Speaker> speaker{Speaker::nobody};
 std::atomic<std::int64_t> deadline_ns{0};  // steady clock; 0: none
 std::atomic<std::uint64_t> most_bytes{0};  // 0: any number
 std::atomic<bool> out_of_memory{false};
 std::string most_bytes_text;  // set before most_bytes is
 
 using Clock = std::chrono::steady_clock;
-namespace fs = std::filesystem;
 
-std::mutex folders_mutex;
-std::vector<fs::path> folders;
+bool speaks(Speaker who) {
+  Speaker expected = Speaker::nobody;
+  return speaker.compare_exchange_strong(expected, who);
+}
 
-// OutputFile names its temporaries .<target>.<process id>-<counter>.tmp
-void remove_unfinished_files() {
-  const std::lock_guard lock(folders_mutex);
-  const std::string mark = "." + std::to_string(::getpid()) + "-";
-  for (const fs::path& folder : folders) {
-    std::error_code error;
-    for (const auto& entry : fs::directory_iterator(folder, error)) {
-      const std::string name = entry.path().filename().string();
-      if (name.starts_with('.') && name.ends_with(".tmp") && name.find(mark) != std::string::npos)
-        fs::remove_all(entry.path(), error);
-    }
-  }
+/// What a reader takes at once: a pipe that is full must not keep the process, nor a lock that stdio holds. A pipe that
+/// is ready takes PIPE_BUF bytes.
+void write_if_ready(int file, std::string_view text) {
+  pollfd ready{.fd = file, .events = POLLOUT, .revents = 0};
+  if (::poll(&ready, 1, 0) == 1 && ready.revents == POLLOUT)
+    (void)!::write(file, text.data(), std::min<std::size_t>(text.size(), PIPE_BUF));
+}
+
+void explain(Code code) {
+  Diagnostic why{.code = code};
+  if (code == Code::limit_memory) why.args = {most_bytes_text};
+  if (in_json)
+    write_if_ready(STDOUT_FILENO, Json{{"error", error_json(why)}, {"diagnostics", Json::array()}}.dump(2) + "\n");
+  write_if_ready(STDERR_FILENO, "\n" + render(why) + "\n");
 }
 
 [[noreturn]] void end_now(Code code) {
-  remove_unfinished_files();
-  Diagnostic why{.code = code};
-  if (code == Code::limit_memory) why.args = {most_bytes_text};
-  if (in_json && claim_answer()) {
-    std::fputs((Json{{"error", error_json(why)}, {"diagnostics", Json::array()}}.dump(2) + "\n").c_str(), stdout);
-    std::fflush(stdout);
+  try {
+    const bool is_told = !speaks(Speaker::watch);
+    remove_unfinished();
+    if (!is_told) explain(code);
+  } catch (...) {  // no memory is left to say why
   }
-  std::fputs(("\n" + render(why) + "\n").c_str(), stderr);
-  std::fflush(stderr);
   ::_exit(info(code).exit_code);
 }
 
+/// As end_now(), but an answer that is being given has another second: it may wait for its reader for ever.
+void end_unless_answering(Code code, Clock::duration late) {
+  if (speaker != Speaker::work || late > std::chrono::seconds(1)) end_now(code);
+}
+
+/// Those that whoever started us does not want ignored, as `nohup` and `&` in a script do.
 sigset_t stop_signals() {
   sigset_t set;
   sigemptyset(&set);
-  sigaddset(&set, SIGINT);
-  sigaddset(&set, SIGTERM);
-  sigaddset(&set, SIGHUP);
+  for (const int number : {SIGINT, SIGTERM, SIGHUP}) {
+    struct sigaction inherited {};
+    if (sigaction(number, nullptr, &inherited) == 0 && inherited.sa_handler != SIG_IGN) sigaddset(&set, number);
+  }
   return set;
 }
 
-/// What RLIMIT_DATA counts: private writable memory.
+/// What RLIMIT_DATA counts: private writable memory. Allocates nothing.
 std::uint64_t data_bytes() {
   std::array<char, 256> text{};
   const int file = ::open("/proc/self/statm", O_RDONLY | O_CLOEXEC);
-  const ssize_t size = file < 0 ? 0 : ::read(file, text.data(), text.size() - 1);
+  const ssize_t size = file < 0 ? 0 : ::read(file, text.data(), text.size());
   if (file >= 0) ::close(file);
-  std::istringstream fields(size > 0 ? text.data() : "");
+  const char* const end = text.data() + std::max<ssize_t>(size, 0);
+  const char* next = text.data();
   std::uint64_t pages = 0;
-  for (int field = 0; field < 6; ++field) fields >> pages;
-  return fields ? pages * static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE)) : 0;
+  constexpr int fields_before = 5;
+  for (int field = 0; field <= fields_before; ++field) {
+    const auto [rest, error] = std::from_chars(next, end, pages);
+    if (error != std::errc()) return 0;
+    next = rest < end ? rest + 1 : end;
+  }
+  return pages * static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
 }
 
-void wait_for_signals() {
-  const sigset_t set = stop_signals();
+void wait_for_signals(sigset_t set) {
+  // OpenCASCADE polls only between faces: the work gets a moment to unwind, then the process goes.
+  constexpr std::chrono::milliseconds to_unwind(600);
   Clock::time_point asked{};
   for (;;) {
     const timespec slice{0, 20'000'000};
@@ -96,14 +115,11 @@ void wait_for_signals() {
       stop = true;
       asked = now;
     }
-    // OpenCASCADE polls only between faces: the work gets a moment to unwind, then the process goes.
-    if (stop && now - asked > std::chrono::milliseconds(600)) {
-      end_now(out_of_memory ? Code::limit_memory : Code::cancelled);
-    }
+    if (stop && now - asked > to_unwind)
+      end_unless_answering(out_of_memory ? Code::limit_memory : Code::cancelled, now - asked - to_unwind);
     const std::int64_t limit = deadline_ns;
-    if (limit != 0 && now.time_since_epoch().count() > limit) {
-      end_now(Code::limit_time);
-    }
+    if (const Clock::duration late(now.time_since_epoch().count() - limit); limit != 0 && late.count() > 0)
+      end_unless_answering(Code::limit_time, late);
   }
 }
 
@@ -113,18 +129,17 @@ void watch_stop_signals() {
   const sigset_t set = stop_signals();
   pthread_sigmask(SIG_BLOCK, &set, nullptr);
   std::signal(SIGXFSZ, SIG_IGN);  // a file beyond `ulimit -f`: the write fails, and is told as such
-  std::thread(wait_for_signals).detach();
+  std::thread(wait_for_signals, set).detach();
 }
 
 bool stop_requested() { return stop; }
 
 void answer_stop_in_json() { in_json = true; }
 
-bool claim_answer() { return !answered.exchange(true); }
-
-void clean_on_stop(const fs::path& output) {
-  const std::lock_guard lock(folders_mutex);
-  folders.push_back(output.has_parent_path() ? output.parent_path() : fs::path("."));
+bool claim_answer() {
+  if (speaks(Speaker::work)) return true;
+  while (speaker == Speaker::watch) ::pause();  // the process is about to end
+  return false;
 }
 
 void end_beyond(std::uint64_t bytes, std::string text) {

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 // SIGINT, SIGTERM and SIGHUP ask the work to stop; if it does not within a second, temporary files are removed and the
-// process ends.
+// process ends. One that is ignored already (nohup) stays so. An answer that is being given is not cut off but a second
+// later, or by a second signal.
 
 #include <cstdint>
-#include <filesystem>
 #include <string>
 
 namespace meso::cli {
@@ -25,10 +25,8 @@ void end_beyond(std::uint64_t bytes, std::string text);
 
 /// A process that has to end by itself says so in an object on standard output, too.
 void answer_stop_in_json();
-/// True once: for whoever prints the one object.
+/// Before anything is printed: the answer is the caller's now. True the first time, for whoever prints the one object.
+/// Does not return where the process is about to end by itself.
 [[nodiscard]] bool claim_answer();
-
-/// Unfinished output files beside `output` are removed when the process has to end by itself.
-void clean_on_stop(const std::filesystem::path& output);
 
 }  // namespace meso::cli

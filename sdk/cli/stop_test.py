@@ -5,6 +5,7 @@
 
 usage: stop_test.py MESO [unittest arguments]     STOP_TEST=all: every kind of work at every moment, some minutes
 """
+import json
 import os
 import pathlib
 import re
@@ -102,11 +103,25 @@ class Stopping(unittest.TestCase):
     def tearDownClass(cls):
         shutil.rmtree(cls.root)
 
-    def start(self, words):
+    def start(self, words, **options):
         temporary = self.root / "tmp"
         temporary.mkdir(exist_ok=True)
-        return subprocess.Popen([MESO, *words.format(d=self.documents, o=self.outputs).split()], stdout=subprocess.PIPE,
-                                stderr=subprocess.PIPE, env={**os.environ, "TMPDIR": str(temporary)})
+        return subprocess.Popen([MESO, *words.format(d=self.documents, o=self.outputs).split()],
+                                **{"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, **options},
+                                env={**os.environ, "TMPDIR": str(temporary)})
+
+    def full_pipe(self):
+        """To write to; its reader has stopped reading, as a pager does."""
+        reader, writer = os.pipe()
+        self.addCleanup(os.close, reader)
+        self.addCleanup(os.close, writer)
+        os.set_blocking(writer, False)
+        try:
+            while True:
+                os.write(writer, bytes(4096))
+        except BlockingIOError:
+            os.set_blocking(writer, True)
+        return writer
 
     def wait_until_it_listens(self, job):
         """Until then the system ends it, and there is nothing to remove."""
@@ -117,7 +132,7 @@ class Stopping(unittest.TestCase):
             time.sleep(0.005)
 
     def assert_nothing_left(self):
-        left = [p for folder in (self.outputs, self.root / "tmp") for p in folder.rglob("*") if p.is_file()]
+        left = [p for folder in (self.outputs, self.root / "tmp") for p in folder.rglob("*")]
         self.assertEqual(left, [])
 
     def assert_stops(self, words, moment, number):
@@ -155,6 +170,79 @@ class Stopping(unittest.TestCase):
                 self.assertLess(time.monotonic() - asked, SECONDS_TO_STOP + SECONDS_OF_GRACE)
                 self.assertEqual(job.returncode, 130, told)
                 self.assert_nothing_left()
+
+    def test_a_link_to_a_file_elsewhere(self):
+        elsewhere = self.root / "elsewhere"
+        elsewhere.mkdir()
+        target = elsewhere / "real.stl"
+        target.write_text("old")
+        (self.outputs / "a.stl").symlink_to(target)
+        try:
+            job = self.start("convert {d}/many.meso {o}/a.stl")
+            while job.poll() is None and len(list(elsewhere.iterdir())) == 1:
+                time.sleep(0.01)
+            self.assertIsNone(job.poll(), "it ended too early")
+            job.send_signal(signal.SIGTERM)
+            told = job.communicate(timeout=60)[1]
+            self.assertEqual(job.returncode, 130, told)
+            self.assertEqual([p.name for p in elsewhere.iterdir()], ["real.stl"])
+            self.assertEqual(target.read_text(), "old")
+        finally:
+            (self.outputs / "a.stl").unlink()
+
+    def test_nobody_reads_what_is_told(self):
+        for words in ("convert {d}/many.meso {o}/a.step --progress json", "convert {d}/torus.meso {o}/a.step"):
+            with self.subTest(words=words):
+                job = self.start(words, stderr=self.full_pipe())
+                self.wait_until_it_listens(job)
+                time.sleep(0.5)
+                job.send_signal(signal.SIGTERM)
+                asked = time.monotonic()
+                self.assertEqual(job.wait(timeout=60), 130)
+                self.assertLess(time.monotonic() - asked, SECONDS_TO_STOP + SECONDS_OF_GRACE)
+                job.stdout.close()
+                self.assert_nothing_left()
+        began = time.monotonic()
+        with self.start("convert {d}/many.meso {o}/a.step --progress json --timeout 0.5", stderr=self.full_pipe()) as job:
+            self.assertEqual(job.wait(timeout=60), 6)
+        self.assertLess(time.monotonic() - began, 0.5 + 2 * SECONDS_TO_STOP + 1)
+        self.assert_nothing_left()
+
+    @unittest.skipUnless("eval" in VERBS, "this build has no eval")
+    def test_nobody_reads_the_answer(self):
+        with self.start("eval {d}/many.meso --json") as job:
+            self.wait_until_it_listens(job)
+            time.sleep(1.5)
+            job.send_signal(signal.SIGTERM)
+            asked = time.monotonic()
+            self.assertEqual(job.wait(timeout=60), 130)
+            self.assertLess(time.monotonic() - asked, 2 * SECONDS_TO_STOP + SECONDS_OF_GRACE)
+
+    @unittest.skipUnless("eval" in VERBS, "this build has no eval")
+    def test_an_answer_that_has_begun_is_one_object(self):
+        job = self.start("eval {d}/many.meso --json")
+        self.wait_until_it_listens(job)
+        time.sleep(1.5)
+        job.send_signal(signal.SIGTERM)
+        time.sleep(0.9)  # the work alone would have been ended by now
+        answer, told = job.communicate(timeout=60)
+        self.assertEqual(job.returncode, 130, told)
+        self.assertEqual([d["code"] for d in json.loads(answer)["diagnostics"]], ["CANCELLED"])
+
+    def test_signals_that_are_ignored_stay_so(self):
+        def ignore():
+            signal.signal(signal.SIGHUP, signal.SIG_IGN)
+            signal.signal(signal.SIGINT, signal.SIG_IGN)
+        job = self.start("convert {d}/fuse.meso {o}/a.step", preexec_fn=ignore)
+        self.wait_until_it_listens(job)
+        job.send_signal(signal.SIGHUP)
+        job.send_signal(signal.SIGINT)
+        time.sleep(SECONDS_TO_STOP + SECONDS_OF_GRACE)
+        self.assertIsNone(job.poll(), "it was ended")
+        job.send_signal(signal.SIGTERM)
+        told = job.communicate(timeout=60)[1]
+        self.assertEqual(job.returncode, 130, told)
+        self.assert_nothing_left()
 
     def assert_limit(self, words, flags, says, seconds):
         began = time.monotonic()

@@ -8,7 +8,6 @@
 #include "meso/package/open_document.hpp"
 #include "meso/xml/write.hpp"
 #include "run.hpp"
-#include "stop.hpp"
 
 namespace meso::cli {
 namespace {
@@ -23,7 +22,6 @@ int canonical(Run& run, const std::string& in, const std::string& out) {
   if (out.empty()) {
     std::fwrite(bytes.data(), 1, bytes.size(), stdout);
   } else {
-    clean_on_stop(out);
     auto file = OutputFile::create(out, run.existing_file(), run.sink);
     if (file) {
       (void)file->write(bytes);  // commit() reports what went wrong

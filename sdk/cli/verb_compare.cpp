@@ -10,7 +10,6 @@
 #include "meso/operations/compare.hpp"
 #include "meso/package/referenced_files.hpp"
 #include "run.hpp"
-#include "stop.hpp"
 
 namespace meso::cli {
 namespace {
@@ -89,7 +88,6 @@ std::optional<Series> parse_series(const std::string& text, Run& run) {
 }
 
 bool write_text(const fs::path& file, std::string_view text, Run& run) {
-  clean_on_stop(file);
   auto out = OutputFile::create(file.string(), run.existing_file(), run.sink);
   if (out) (void)out->write(text);  // commit() reports what went wrong
   return out && out->commit(run.sink);

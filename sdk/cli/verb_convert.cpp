@@ -7,7 +7,6 @@
 #include "meso/expr/expression.hpp"
 #include "meso/operations/convert.hpp"
 #include "run.hpp"
-#include "stop.hpp"
 
 namespace meso::cli {
 namespace {
@@ -121,7 +120,6 @@ int convert_verb(Run& run, const std::string& in, const std::string& out, const 
   }
   if (!options || run.sink.has_errors()) return run.finish();
   options->measure = flags.measure;
-  clean_on_stop(out);
   const auto report = operations::convert(
       in, out, *options, {.ascii = flags.ascii, .no_clobber = run.flags.no_clobber, .run = options->run}, run.sink);
   if (!report) return run.finish(Json{{"input", in}, {"output", out}});

@@ -34,7 +34,6 @@ class TextOutput {
   static std::optional<TextOutput> open(const std::string& path, Run& run) {
     TextOutput out;
     if (!path.empty()) {
-      clean_on_stop(path);
       auto file = OutputFile::create(path, run.existing_file(), run.sink);
       if (!file) return std::nullopt;
       out.file_.emplace(std::move(*file));
@@ -169,6 +168,7 @@ int eval_verb(Run& run, const std::string& in, const std::string& out_path, cons
           0, cells->size(), [](const PlacedCell&) { return true; }, run.sink)) {
     return run.finish({{"pattern", pattern->id.text}, {"unitCell", pattern->unit_cell.text}, {"cells", Json::array()}});
   }
+  if (out_path.empty()) (void)claim_answer();  // no second object after half of this one
   auto out = TextOutput::open(out_path, run);
   if (out && (json ? write_json(*cells, *out, run.sink) : write_csv(*cells, *out, run.sink)))
     (void)out->commit(run.sink);

@@ -7,7 +7,6 @@
 #include "meso/package/open_document.hpp"
 #include "meso/package/package.hpp"
 #include "run.hpp"
-#include "stop.hpp"
 #if defined(MESO_CLI_BREP) && defined(MESO_CLI_RENDER)
 #include "meso/operations/load_mesh.hpp"
 #include "meso/render/picture.hpp"
@@ -49,7 +48,6 @@ int pack_verb(Run& run, const std::string& in, const std::string& out, [[maybe_u
     options.thumbnail = std::move(*thumbnail);
   }
 #endif
-  clean_on_stop(out);
   return finish(run, in, out, pack(in, out, options, run.sink));
 }
 
@@ -57,7 +55,6 @@ int unpack_verb(Run& run, const std::string& in, std::string out) {
   while (out.size() > 1 && out.ends_with('/')) out.pop_back();
   const RunOptions options = run.options();
   if (run.sink.has_errors()) return run.finish();
-  clean_on_stop(out);
   return finish(run, in, out, unpack(in, out, run.existing_file(), options, run.sink));
 }
 

@@ -8,7 +8,6 @@
 #include "meso/operations/load_mesh.hpp"
 #include "meso/render/picture.hpp"
 #include "run.hpp"
-#include "stop.hpp"
 
 namespace meso::cli {
 namespace {
@@ -38,7 +37,6 @@ int render_verb(Run& run, const std::string& in, const std::string& out, const s
   if (!cut.empty()) look.cut = parse_cut(cut, run);
   const auto options = run.sink.has_errors() ? std::nullopt : make_options(run);
   if (!options) return run.finish();
-  clean_on_stop(out);
   const auto mesh = operations::load_mesh(in, *options, run.sink);
   if (!mesh) return run.finish();
   if (look.cut && !is_cut(*mesh, *look.cut)) {

@@ -167,7 +167,6 @@ int sdf_verb(Run& run, const std::vector<std::string>& words) {
   options.measure = run.flags.json;
   if (run.sink.has_errors()) return run.finish(Json::object());
   if (!operations::check_volume_options(program->output, volume, run.sink)) return run.finish(Json::object());
-  clean_on_stop(program->output);
   if (operations::is_volume_output(program->output)) {
     if (options.polish || options.no_slivers || options.double_coordinates)
       return run.usage_error("--polish, --no-slivers and --double have an effect on surfaces only"),

@@ -5,6 +5,7 @@
 #include <cerrno>
 #include <system_error>
 
+#include "meso/base/unfinished_files.hpp"
 #include "meso/package/package.hpp"
 
 namespace meso {
@@ -19,7 +20,7 @@ bool failed(const fs::path& path, const std::error_code& error, DiagnosticSink& 
 /// A folder that is filled under another name, and is gone unless it was put in place.
 class NewFolder {
  public:
-  /// `target` as the caller wrote it. Named like OutputFile's temporaries, so that a stopped process finds it.
+  /// `target` as the caller wrote it.
   NewFolder(fs::path target, DiagnosticSink& sink) : target_(std::move(target)), sink_(sink) {
     fs::path plain = target_.lexically_normal();
     if (!plain.has_filename()) plain = plain.parent_path();  // "folder/"
@@ -27,22 +28,26 @@ class NewFolder {
   }
   ~NewFolder() {
     std::error_code ignored;
-    if (!temporary_.empty()) fs::remove_all(temporary_, ignored);
+    if (!temporary_.empty())
+      finish_unfinished(temporary_.string(), [&] { return fs::remove_all(temporary_, ignored), true; });
   }
   NewFolder(const NewFolder&) = delete;
   NewFolder& operator=(const NewFolder&) = delete;
 
   bool create() {
     std::error_code error;
-    if (fs::create_directory(temporary_, error)) return true;
+    if (make_unfinished(temporary_.string(), [&] { return fs::create_directory(temporary_, error); })) return true;
     temporary_.clear();
     return failed(target_, error ? error : std::make_error_code(std::errc::file_exists), sink_);
   }
   bool write(const std::string& name, std::string_view bytes) {
     const fs::path file = temporary_ / fs::path(name);
     std::error_code error;
-    fs::create_directories(file.parent_path(), error);
-    if (error) return failed(target_ / fs::path(name), error, sink_);
+    const bool made = make_unfinished(temporary_.string(), [&] {
+      fs::create_directories(file.parent_path(), error);
+      return !error;
+    });
+    if (!made) return failed(target_ / fs::path(name), error, sink_);
     auto out = OutputFile::create(file.string(), ExistingFile::refuse, sink_);
     if (out) (void)out->write(bytes);  // commit() reports what went wrong
     return out && out->commit(sink_);
@@ -50,8 +55,11 @@ class NewFolder {
   /// In one step; an empty folder is replaced.
   bool publish() {
     std::error_code error;
-    fs::rename(temporary_, target_, error);
-    if (error) return failed(target_, error, sink_);
+    const bool renamed = finish_unfinished(temporary_.string(), [&] {
+      fs::rename(temporary_, target_, error);
+      return !error;
+    });
+    if (!renamed) return failed(target_, error, sink_);
     temporary_.clear();
     return true;
   }
