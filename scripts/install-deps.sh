@@ -15,7 +15,7 @@ packages=(
   libzip-dev zipcmp zipmerge ziptool
   # expressions of patterns
   libmuparser-dev
-  # vector fields: neighbours, HDF5, VTU
+  # vector fields: HDF5, VTU
   libhdf5-dev libexpat1-dev zlib1g-dev
   # exact geometry; OpenCASCADE's CMake package insists on all six
   libocct-foundation-dev libocct-modeling-data-dev libocct-modeling-algorithms-dev
@@ -27,8 +27,8 @@ packages=(
   # tests: GoogleTest, two judges of the XML schema, resource measurement
   libgtest-dev libgmock-dev libbenchmark-dev libxml2-utils libxerces-c-samples time
 )
-# what field fixtures and the checks of fields are made with; run, never linked
-slower_checks=(calculix-ccx python3-gmsh python3-vtk9 python3-h5py python3-numpy python3-scipy
+# what fixtures, pictures and the checks of fields and examples are made with; run, never linked
+slower_checks=(calculix-ccx python3-vtk9 python3-h5py python3-numpy python3-scipy python3-matplotlib python3-pil admesh
   clang-14 clang-format-14 clang-tidy-14 libclang-rt-14-dev freecad-python3 gmsh)
 # what bench/implicit_table.py compares with: VTK and OpenVDB, about 1 GB
 peers=(libvtk9-dev libopenvdb-dev)
