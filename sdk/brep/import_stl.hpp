@@ -11,7 +11,6 @@ namespace meso::brep {
 
 /// In the file's own unit, not yet checked to be closed. Facets are joined where their corners are equal, bit for bit;
 /// one solid per connected surface.
-[[nodiscard]] std::optional<Solids> read_stl_solids(const Resource& file, ElementId where,
-                                                    const SolidContext& context);
+[[nodiscard]] std::optional<Solids> read_stl_solids(const Resource& file, ElementId where, const SolidContext& context);
 
 }  // namespace meso::brep

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "generators.hpp"
-#include "meso/model/walk.hpp"
 
 #include <algorithm>
 #include <set>
 
+#include "meso/model/walk.hpp"
 
 namespace meso {
 namespace {

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "instructions.hpp"
-#include "meso/model/walk.hpp"
 
 #include <algorithm>
 #include <type_traits>
 
+#include "meso/model/walk.hpp"
 
 namespace meso {
 namespace {

@@ -3,8 +3,8 @@
 #include <algorithm>
 
 #include "families.hpp"
-#include "surface_names.hpp"
 #include "meso/model/walk.hpp"
+#include "surface_names.hpp"
 
 namespace meso {
 namespace {

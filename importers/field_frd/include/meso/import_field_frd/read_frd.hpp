@@ -2,9 +2,9 @@
 #pragma once
 // Results of CalculiX: .frd files, as text and binary.
 //
-//   const auto table = read_field_frd(bytes, "beam.frd", "", {}, sink);          // x y z D1 D2 D3 SXX SYY SZZ SXY SYZ
-//   SZX const auto stress = read_field_frd(bytes, "beam.frd", "STRESS", {}, sink);   // x y z and the components of one
-//   data set
+//   const auto table = read_field_frd(bytes, "beam.frd", "", {}, sink);         // x y z D1 D2 D3 SXX SYY ... SZX
+//   const auto stress = read_field_frd(bytes, "beam.frd", "STRESS", {}, sink);  // x y z SXX SYY ... SZX
+// The third argument names one data set; empty means all.
 //
 // One row for each node, in the order of the file; columns have the names of the components (with the data set's name
 // in front where two data sets share one). Of a data set that is there for several steps the last counts. Nodes without

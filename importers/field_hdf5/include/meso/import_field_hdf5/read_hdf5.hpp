@@ -9,8 +9,8 @@
 // sets that lie in the file as doubles in one piece are mapped, others read in blocks of rows. Columns of a data set
 // with an attribute `components` (texts) have these names, others that of the data set (and _1, _2 ...); `unit` or
 // `units` is their unit. Errors: IMPORT_UNREADABLE (no HDF5 file, cut), FIELD_COLUMN where there is no such data set,
-// FIELD_FILE_UNSUPPORTED (texts, three dimensions, links to other files and numbers in them), FIELD_RECORD_COUNT, LIMIT_MEMORY. Thread rule: one call at a time,
-// as Debian's library has no lock; the room holds one.
+// FIELD_FILE_UNSUPPORTED (texts, three dimensions, links to other files and numbers in them), FIELD_RECORD_COUNT,
+// LIMIT_MEMORY. Thread rule: one call at a time, as Debian's library has no lock; the room holds one.
 
 #include <optional>
 #include <string>

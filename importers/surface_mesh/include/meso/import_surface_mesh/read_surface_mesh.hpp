@@ -31,7 +31,7 @@ namespace meso {
 [[nodiscard]] std::optional<TriangleMesh> read_surface_mesh(std::string_view bytes, const std::string& file,
                                                             DiagnosticSink& sink);
 /// A file may take a quarter of the memory budget: FILE_TOO_LARGE. LIMIT_TIME, CANCELLED.
-[[nodiscard]] std::optional<TriangleMesh> read_surface_mesh_file(const Resource& file,
-                                                                 DiagnosticSink& sink, const RunOptions& run = {});
+[[nodiscard]] std::optional<TriangleMesh> read_surface_mesh_file(const Resource& file, DiagnosticSink& sink,
+                                                                 const RunOptions& run = {});
 
 }  // namespace meso

@@ -23,7 +23,7 @@ struct ReadStepOptions {
   double angle_rad = 0.5;
 };
 
-[[nodiscard]] std::optional<Body> read_step(const Resource& file, const ReadStepOptions& options,
-                                            const RunOptions& run, DiagnosticSink& sink);
+[[nodiscard]] std::optional<Body> read_step(const Resource& file, const ReadStepOptions& options, const RunOptions& run,
+                                            DiagnosticSink& sink);
 
 }  // namespace meso::brep

@@ -3,8 +3,8 @@
 // Whether the cells of a pattern are there at all, and where the body is: faults that would otherwise only show as a
 // part without holes.
 //
-//   if (!check_reach(evaluation, *cells, apply, part, box_of_body_mm, sink)) return std::nullopt;   //
-//   FIELD_MISSES_PART
+//   if (!check_reach(evaluation, *cells, apply, part, box_of_body_mm, sink))
+//     return std::nullopt;  // FIELD_MISSES_PART
 //
 // Each looks at cells only until one is found. Stateless.
 

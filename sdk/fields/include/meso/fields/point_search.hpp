@@ -6,9 +6,9 @@
 //   search.nearest({1, 2, 3});                // the lower number where two are equally near
 //   search.inverse_distance({1, 2, 3}, 2);    // Shepard's weights over the eight nearest
 //
-// A kd-tree that holds the points themselves: 34 bytes each. Building is O(n log n), a look-up O(log n), above a million
-// a second among 10^5 points in random order (bench/fields_bench.cpp). Immutable and safe to share. REQUIRES: 1 to 2^32
-// points with finite coordinates.
+// A kd-tree that holds the points themselves: 34 bytes each. Building is O(n log n), a look-up O(log n), above a
+// million a second among 10^5 points in random order (bench/fields_bench.cpp). Immutable and safe to share. REQUIRES: 1
+// to 2^32 points with finite coordinates.
 
 #include <memory>
 #include <span>

@@ -36,7 +36,8 @@ class Records {
   /// REQUIRES: columns > 0 divides the number of values.
   [[nodiscard]] static Records of(std::vector<double> values, std::size_t columns);
   /// Nothing if the file is shorter than the layout. REQUIRES: rows and columns > 0.
-  [[nodiscard]] static std::optional<Records> map(std::shared_ptr<const ResourceBytes> file, const RecordLayout& layout);
+  [[nodiscard]] static std::optional<Records> map(std::shared_ptr<const ResourceBytes> file,
+                                                  const RecordLayout& layout);
   /// Bytes that a file of this layout has at least; nothing if no file can be so long.
   [[nodiscard]] static std::optional<std::uint64_t> bytes_needed(const RecordLayout& layout);
 
