@@ -104,6 +104,7 @@ bool settle_fragments(Solids& solids, const Solids& before, const FoldContext& c
       for (std::size_t i = 0; i < solids.size(); ++i)
         if (!is_loose[i]) kept.push_back(solids[i]);
       solids = std::move(kept);
+      counts.dropped += loose;
       return true;
     }
     case FragmentRule::error:

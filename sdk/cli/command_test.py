@@ -252,6 +252,20 @@ class ExitCodes(CommandTest):
         self.expect(6, "convert", field, self.out("d.ply"), "--samples", "60000^3", "--max-memory", "64M", says="LIMIT_GRID")
         self.assertFalse(pathlib.Path(self.out("d.ply")).exists())
 
+    @needs("convert")
+    @unittest.skipUnless("sdf" in VERBS, "this build has no implicit engine")
+    def test_why_the_exact_engine_does_not_make_it(self):
+        axes = "".join(f'<loop index="{i}" axis="{axis}" count="9" spacing="1"/>' for i, axis in zip("uvw", "xyz"))
+        file = self.file("many.meso", f"""<meso xmlns="urn:meso-format:1.0" version="1.0" unit="millimeter">
+          <macrostructures><macrostructure id="m"><csg><box dx="6" dy="6" dz="6"/></csg></macrostructure></macrostructures>
+          <unitCells><unitCell id="u"><box dx="1" dy="1" dz="1"/><csg><sphere radius="0.7"/></csg></unitCell></unitCells>
+          <patterns><pattern id="none" unitCell="u"><loop index="i" count="3"/><when test="i &gt; 5"/></pattern>
+            <pattern id="many" unitCell="u">{axes}</pattern></patterns>
+          <parts><part id="a" macrostructure="m"><apply pattern="none" operation="union"/><apply pattern="many" operation="union"/></part></parts>
+        </meso>""")
+        told = self.expect(0, "convert", file, self.out("a.stl"), says="the exact one answers: more than 600 solids").stderr.decode()
+        self.assertEqual(told.count("PATTERN_KEEPS_NONE"), 1)
+
     @needs("render")
     def test_a_cut_beside_the_part(self):
         self.expect(2, "render", self.file("a.meso", document()), self.out("a.png"), "--cut", "z=90mm", says="does not meet the part")
@@ -267,6 +281,14 @@ class ExitCodes(CommandTest):
         self.assertNotIn("loose fragments", told)
         report = json.loads(self.expect(0, "convert", file, self.out("a.step"), "--json").stdout)
         self.assertEqual((report["solids"], report["fragments"], report["droppedFragments"]), (1, 0, 2))
+        # Of two parts the first keeps them, and is the one that is built.
+        step = '<apply pattern="p" operation="intersection" fragments="{}"/>'.format
+        two = re.sub(r"<parts>.*</parts>", f'<parts><part id="a" macrostructure="m">{step("keep")}</part>'
+                     f'<part id="b" macrostructure="m">{step("drop")}</part></parts><build><item part="a"/></build>', text)
+        file = self.file("two.meso", two)
+        for part, solids, kept, dropped in ([], 3, 2, None), (["--part", "b"], 1, 0, 2):
+            report = json.loads(self.expect(0, "convert", file, self.out("a.step"), *part, "--json").stdout)
+            self.assertEqual((report["solids"], report["fragments"], report.get("droppedFragments")), (solids, kept, dropped))
 
     @needs("convert")
     def test_step_files_are_audited(self):

@@ -61,14 +61,6 @@ bool fits(const fs::path& out, const MakeOptions& options, const WriteOptions& w
   return true;
 }
 
-/// Whether a part that is made leaves out what its steps cut loose.
-bool drops_fragments(const Document& document, const std::string& only) {
-  return std::ranges::any_of(document.parts, [&](const Part& part) {
-    return (only.empty() || part.id.text == only) &&
-           std::ranges::any_of(part.steps, [](const Apply& apply) { return apply.fragments == FragmentRule::drop; });
-  });
-}
-
 std::optional<ConvertReport> convert_exactly(const fs::path& in, const fs::path& out, const MakeOptions& options,
                                              const WriteOptions& write, DiagnosticSink& sink) {
   Stopwatch watch;
@@ -89,8 +81,8 @@ std::optional<ConvertReport> convert_exactly(const fs::path& in, const fs::path&
   report.seconds.write = writing.lap();
   report.measures = brep::measure(body);
   if (report.triangles > 0) report.triangles_volume = brep::volume_of_triangles(body);
-  (drops_fragments(made->evaluation.document(), options.part) ? report.dropped_fragments : report.fragments) =
-      body.fragments;
+  report.dropped_fragments = report.cells.dropped;
+  report.fragments = report.cells.fragments - report.cells.dropped;
   report.closed = brep::audit(body).clean();
   report.seconds.total = watch.total();
   return report;
@@ -98,21 +90,26 @@ std::optional<ConvertReport> convert_exactly(const fs::path& in, const fs::path&
 
 #ifdef MESO_WITH_IMPLICIT_ENGINE
 /// What the exact engine answers where a part is beyond it; faults of the document or of the call are none of these.
-bool is_beyond_exact_engine(const DiagnosticSink& told) {
-  for (const Diagnostic& d : told.diagnostics()) {
-    if (severity(d) != Severity::error) continue;
-    const int exit_code = info(d.code).exit_code;
-    if (d.code == Code::geometry_fragments || d.code == Code::geometry_empty) return false;
-    return exit_code == 4 || exit_code == 5 || d.code == Code::limit_booleans;
-  }
-  return false;
+const Diagnostic* beyond_exact_engine(const DiagnosticSink& told) {
+  const auto error =
+      std::ranges::find(told.diagnostics(), Severity::error, [](const Diagnostic& d) { return severity(d); });
+  if (error == told.diagnostics().end()) return nullptr;
+  if (error->code == Code::geometry_fragments || error->code == Code::geometry_empty) return nullptr;
+  const int exit_code = info(error->code).exit_code;
+  return exit_code == 4 || exit_code == 5 || error->code == Code::limit_booleans ? &*error : nullptr;
 }
 
 /// Geometry that the exact engine should have been able to make, not one that it is not made for.
-bool failed(const DiagnosticSink& told) {
-  return std::ranges::any_of(told.diagnostics(), [](const Diagnostic& d) {
+const Diagnostic* failure(const DiagnosticSink& told) {
+  const auto found = std::ranges::find_if(told.diagnostics(), [](const Diagnostic& d) {
     return d.code == Code::geometry_not_repeatable || info(d.code).exit_code == 5;
   });
+  return found != told.diagnostics().end() ? &*found : nullptr;
+}
+
+/// Reading and evaluating the document once more says some of it once more.
+bool is_told(const DiagnosticSink& sink, const Diagnostic& d) {
+  return std::ranges::find(sink.diagnostics(), d) != sink.diagnostics().end();
 }
 
 void tell(std::string why, DiagnosticSink& sink) {
@@ -124,25 +121,28 @@ std::optional<ConvertReport> convert_to_mesh(const fs::path& in, const fs::path&
   Seconds seconds;
   const auto evaluation = open_document(in, options, seconds, sink);
   if (!evaluation) return std::nullopt;
+  DiagnosticSink told;  // by the exact engine
   if (options.engine == Engine::automatic) {
     std::string why = reason_for_fields(*evaluation, options.part);
     if (why.empty() && (options.spacing_mm || !options.samples.empty())) why = "samples are asked for";
     if (why.empty()) {
-      DiagnosticSink told;
       auto report = convert_exactly(in, out, options, write, told);
-      if (report || !is_beyond_exact_engine(told)) {
-        for (const Diagnostic& d : told.diagnostics()) sink.report(d);
+      const Diagnostic* beyond = beyond_exact_engine(told);
+      if (report || beyond == nullptr) {
+        for (const Diagnostic& d : told.diagnostics())
+          if (!is_told(sink, d)) sink.report(d);
         return report;
       }
-      why = "the exact one answers: " + message(told.diagnostics().front());
-      if (failed(told)) {
-        sink.report({.code = Code::engine_fallback, .args = {message(told.diagnostics().front())}});
-        why.clear();
-      }
+      if (const Diagnostic* failed = failure(told))
+        sink.report({.code = Code::engine_fallback, .args = {message(*failed)}});
+      else
+        why = "the exact one answers: " + message(*beyond);
     }
     if (!why.empty()) tell(std::move(why), sink);
   }
   auto report = make_mesh(*evaluation, out, options, write, sink);
+  for (const Diagnostic& d : told.diagnostics())
+    if (severity(d) == Severity::warning && !is_told(sink, d)) sink.report(d);
   if (!report) return std::nullopt;
   report->seconds.read = seconds.read;
   report->seconds.evaluate = seconds.evaluate;

@@ -40,6 +40,7 @@ struct CellCounts {
   std::uint64_t kept = 0;      ///< that take part in the result
   std::uint64_t crossing = 0;  ///< kept, and cut by the macrostructure's boundary
   std::size_t fragments = 0;   ///< solids beyond the largest that a cut has left loose
+  std::size_t dropped = 0;     ///< of these, those that the document leaves out
 };
 
 /// How the cells of a lattice were cut at the boundary of a body: those that see the same piece of it share a result.
