@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <map>
+#include <numeric>
 #include <set>
 #include <tuple>
 #include <unordered_map>
@@ -75,7 +76,7 @@ void find_point(const SegmentName& name, const Template& geometry, Halving& halv
   }
   halving.point = p;
   halving.off = norm(p - middle);
-  if (!(halving.off < 0.5 * norm(b - name.a))) halving.off = 0;  // another branch
+  if (!(halving.off < 0.499 * norm(b - name.a))) halving.off = 0;  // another branch, or a diameter
 }
 
 struct Placed {
@@ -221,7 +222,8 @@ Halvings halvings_of(const Template& geometry, const Chosen::mapped_type& chosen
   return worst;
 }
 
-void halve(Triangulation& mesh, const Halvings& halvings) {
+/// Halves have the origin of the whole.
+void halve(Triangulation& mesh, const Halvings& halvings, std::vector<std::uint32_t>& origins) {
   std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> middles;  // by the numbers of both ends
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
     for (std::size_t k = 0; k < 3;) {
@@ -238,43 +240,100 @@ void halve(Triangulation& mesh, const Halvings& halvings) {
       half[k] = middle->second;
       mesh.triangles[t][(k + 1) % 3] = middle->second;
       mesh.triangles.push_back(half);
+      origins.push_back(origins[t]);
       k = 0;  // other sides may be named, too
     }
 }
 
-}  // namespace
+/// Triangles of the templates as they were given: template, face, triangle.
+using Originals = std::set<std::tuple<const Template*, std::uint32_t, std::uint32_t>>;
 
-std::size_t clear_triangles(Body& body, const RunOptions& run) {
-  const Body given = body;
-  std::map<const Template*, std::shared_ptr<Template>> own;
-  std::size_t first_count = 0;
-  for (int pass = 0;; ++pass) {
-    const Chosen chosen = chosen_triangles(looked_at(body));
-    std::size_t count = 0;
-    for (const auto& [geometry, triangles] : chosen) count += triangles.size();
-    if (count == 0) return 0;
-    if (pass == 0) first_count = count;
+/// Divides the triangles of one body.
+class Division {
+ public:
+  Division(Body& body, const Originals& left_alone) : body_(body), left_alone_(left_alone) {}
+
+  /// What still meets others when nothing can be done, or not in time, besides what is left alone.
+  Originals divide(const RunOptions& run) {
+    std::size_t first_count = 0;
+    for (int pass = 0;; ++pass) {
+      Chosen chosen = chosen_triangles(looked_at(body_));
+      std::size_t count = 0;
+      Originals originals;
+      for (auto& [geometry, triangles] : chosen) {
+        std::erase_if(triangles,
+                      [&, from = geometry](const auto& t) { return left_alone_.contains(original_of(from, t)); });
+        count += triangles.size();
+        for (const auto& t : triangles) originals.insert(original_of(geometry, t));
+      }
+      if (pass == 0) first_count = count;
+      const bool hopeless = pass == most_passes || count > 4 * first_count + 1000 || run.should_stop();
+      if (count == 0 || hopeless || !halve_all(chosen)) return originals;
+    }
+  }
+
+ private:
+  struct Copy {
+    std::shared_ptr<Template> geometry;
+    const Template* given = nullptr;
+    std::vector<std::vector<std::uint32_t>> origins;  ///< by face and triangle
+  };
+
+  [[nodiscard]] Originals::value_type original_of(const Template* geometry,
+                                                  const std::pair<std::uint32_t, std::uint32_t>& t) const {
+    const auto copy = copies_.find(geometry);
+    if (copy == copies_.end()) return {geometry, t.first, t.second};
+    return {copy->second.given, t.first, copy->second.origins[t.first][t.second]};
+  }
+
+  /// False: no segment is worth it.
+  bool halve_all(const Chosen& chosen) {
     bool any = false;
-    const bool hopeless = pass == most_passes || count > 4 * first_count + 1000 || run.should_stop();
     for (const auto& [geometry, triangles] : chosen) {
-      if (hopeless) break;
       const Halvings halvings = halvings_of(*geometry, triangles);
       if (halvings.empty()) continue;
       any = true;
-      std::shared_ptr<Template> mine = own[geometry];
-      if (!mine) {
-        mine = std::make_shared<Template>(*geometry);
-        own[mine.get()] = mine;
-        visit_shells(body, [&, from = geometry](Shell& shell) {
-          if (shell.geometry.get() == from) shell.geometry = mine;
-        });
-      }
-      for (FaceTemplate& face : mine->faces) halve(face.mesh, halvings);
+      Copy& copy = copy_of(geometry);
+      for (std::size_t f = 0; f < copy.geometry->faces.size(); ++f)
+        halve(copy.geometry->faces[f].mesh, halvings, copy.origins[f]);
     }
-    if (any) continue;
-    body = given;  // they touch: finer triangles would, too
-    return first_count;
+    return any;
   }
+
+  Copy& copy_of(const Template* geometry) {
+    if (const auto known = copies_.find(geometry); known != copies_.end()) return known->second;
+    Copy copy{std::make_shared<Template>(*geometry), geometry, {}};
+    for (const FaceTemplate& face : copy.geometry->faces) {
+      auto& origins = copy.origins.emplace_back(face.mesh.triangles.size());
+      std::iota(origins.begin(), origins.end(), 0U);
+    }
+    visit_shells(body_, [&](Shell& shell) {
+      if (shell.geometry.get() == geometry) shell.geometry = copy.geometry;
+    });
+    const Template* key = copy.geometry.get();
+    return copies_.emplace(key, std::move(copy)).first->second;
+  }
+
+  Body& body_;
+  const Originals& left_alone_;
+  std::map<const Template*, Copy> copies_;  ///< by what the body has
+};
+
+}  // namespace
+
+std::size_t clear_triangles(Body& body, const RunOptions& run) {
+  constexpr int most_rounds = 3;
+  const Body given = body;
+  Originals left_alone;
+  for (int round = 0; round < most_rounds && !run.should_stop(); ++round) {
+    const Originals remaining = Division(body, left_alone).divide(run);
+    if (remaining.empty()) return left_alone.size();
+    left_alone.insert(remaining.begin(), remaining.end());
+    body = given;  // they touch, and finer triangles would, too: again without them
+  }
+  std::size_t count = 0;
+  for (const auto& [geometry, triangles] : chosen_triangles(looked_at(body))) count += triangles.size();
+  return count;
 }
 
 }  // namespace meso::brep

@@ -98,6 +98,27 @@ TEST(ClearTriangles, BodiesThatTouchAreTold) {
   EXPECT_EQ(body.solids[0].outer.geometry->faces[0].mesh.triangles.size(), 8u);
 }
 
+TEST(ClearTriangles, WhereBodiesTouchOthersAreClearedAllTheSame) {
+  Body body;
+  const auto geometry = std::make_shared<const Template>(ball(1, 0.3, false));
+  const Vec3 away{10, 0, 0};
+  body.solids = {
+      {whole_template(geometry), {}},
+      {whole_template(geometry, Affine::from_translation({1, 0.2, 0.1})), {}},
+      {whole_template(std::make_shared<const Template>(ball(1.05, 0.4, false)), Affine::from_translation(away)),
+       {whole_template(std::make_shared<const Template>(ball(1, 0, true)), Affine::from_translation(away))}}};
+  Body apart;
+  apart.solids = {body.solids[2]};
+  ASSERT_GT(count_self_contacts(welded(apart)).pairs, 0u);
+  const std::size_t left = clear_triangles(body, {});
+  EXPECT_GT(left, 0u);
+  EXPECT_LE(left, 16u);
+  apart.solids = {body.solids[2]};
+  EXPECT_EQ(count_self_contacts(welded(apart)).pairs, 0u);
+  EXPECT_TRUE(audit_mesh(welded(apart)).watertight());
+  EXPECT_EQ(body.solids[0].outer.geometry->faces[0].mesh.triangles.size(), 8u);
+}
+
 TEST(NearestPoint, LiesOnTheSurfaceAndNoOtherIsNearer) {
   const AxisFrame frame{{1, 2, 3}, Vec3{1, 2, 2} / 3, Vec3{2, -1, 0} / std::sqrt(5)};
   const Vec3 y = cross(frame.z, frame.x);
@@ -118,6 +139,17 @@ TEST(NearestPoint, LiesOnTheSurfaceAndNoOtherIsNearer) {
   expect_nearest(SphereSurface{frame, 1.1}, [&](double t) { return at(0.7, 1.1 * std::cos(t), 1.1 * std::sin(t)); });
   expect_nearest(TorusSurface{frame, 2, 0.5},
                  [&](double t) { return at(0.7, 2 + 0.5 * std::cos(t), 0.5 * std::sin(t)); });
+}
+
+TEST(NearestPoint, LiesOnTheSurfaceWhereSeveralAreNearest) {
+  const AxisFrame frame{{1, 2, 3}, {0, 0, 1}, {1, 0, 0}};
+  const auto off = [&](const Surface& surface, Vec3 p) { return norm(nearest_point(surface, p) - p); };
+  EXPECT_NEAR(off(SphereSurface{frame, 2}, frame.origin), 2, 1e-15);
+  EXPECT_NEAR(off(CylinderSurface{frame, 2}, {1, 2, 7}), 2, 1e-15);
+  EXPECT_NEAR(off(TorusSurface{frame, 3, 1}, frame.origin), 2, 1e-15);
+  EXPECT_NEAR(off(TorusSurface{frame, 3, 1}, {4, 2, 3}), 1, 1e-15);
+  EXPECT_NEAR(off(ConeSurface{frame, 1, std::atan(0.5)}, {1, 2, -9}), 10, 1e-14);  // its apex is at z = 1
+  EXPECT_NEAR(off(ConeSurface{frame, 1, std::atan(0.5)}, frame.origin), std::cos(std::atan(0.5)), 1e-15);
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 #include "face_mesh.hpp"
 
 #include <Poly_PolygonOnTriangulation.hxx>
+#include <Standard_OutOfMemory.hxx>
 #include <bit>
 #include <map>
 
@@ -193,6 +194,8 @@ void mesh_faces(const TopoDS_Shell& shell, const MeshTolerance& tolerance, const
   for (int attempt = 1; attempt <= most_attempts; ++attempt) {
     try {
       if (FaceMesher(finer, edges, vertices, geometry).mesh(shell)) return;
+    } catch (const Standard_OutOfMemory&) {
+      throw;  // shorter chords take more
     } catch (const Standard_Failure&) {
       if (attempt == most_attempts) throw;
     }

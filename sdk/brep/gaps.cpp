@@ -2,6 +2,7 @@
 #include "meso/brep/gaps.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <optional>
 
@@ -14,10 +15,15 @@ namespace {
 
 constexpr int points_of_edge = 9;
 
+/// NaN is worse than any number, and stays.
+void raise(double& most, double gap) {
+  if (!std::isnan(most) && !(gap <= most)) most = gap;
+}
+
 void join(Gaps& to, const Gaps& other, double scale) {
-  to.edge_mm = std::max(to.edge_mm, scale * other.edge_mm);
-  to.vertex_mm = std::max(to.vertex_mm, scale * other.vertex_mm);
-  to.triangle_mm = std::max(to.triangle_mm, scale * other.triangle_mm);
+  raise(to.edge_mm, scale * other.edge_mm);
+  raise(to.vertex_mm, scale * other.vertex_mm);
+  raise(to.triangle_mm, scale * other.triangle_mm);
   to.triangles_mm3 += scale * scale * scale * other.triangles_mm3;
   to.triangles_abs_mm3 += scale * scale * scale * other.triangles_abs_mm3;
 }
@@ -45,9 +51,9 @@ class FaceGaps {
     const Vec3 origin = cell_origin(geometry_, use.offset);
     for (int i = 0; i <= points_of_edge; ++i) {
       const Vec3 p = to_vec(curve->Value(range.first + (range.last - range.first) * i / points_of_edge));
-      gaps_.edge_mm = std::max(gaps_.edge_mm, norm(foot_(p + origin) - p - origin));
-      if (i == 0) gaps_.vertex_mm = std::max(gaps_.vertex_mm, norm(p - ends[0]));
-      if (i == points_of_edge) gaps_.vertex_mm = std::max(gaps_.vertex_mm, norm(p - ends[1]));
+      raise(gaps_.edge_mm, norm(foot_(p + origin) - p - origin));
+      if (i == 0) raise(gaps_.vertex_mm, norm(p - ends[0]));
+      if (i == points_of_edge) raise(gaps_.vertex_mm, norm(p - ends[1]));
     }
   }
 
@@ -61,11 +67,11 @@ class FaceGaps {
   void add_triangle(Vec3 a, Vec3 b, Vec3 c) {
     const Vec3 twice = cross(b - a, c - a);
     const double area = norm(twice) / 2;
-    if (!(area > 0)) return;
+    if (area == 0) return;
     const Vec3 normal = twice / (2 * area);
     const auto outwards = [&](Vec3 p) {
       const double gap = dot(foot_(p) - p, normal);
-      gaps_.triangle_mm = std::max(gaps_.triangle_mm, std::fabs(gap));
+      raise(gaps_.triangle_mm, std::fabs(gap));
       return gap;
     };
     const double middles = outwards((a + b) / 2) + outwards((b + c) / 2) + outwards((c + a) / 2);

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "meso/brep/measure.hpp"
 #include "meso/brep/triangles.hpp"
 #include "shape_to_body.hpp"
@@ -77,6 +79,14 @@ TEST(Gaps, ThingsThatWereMovedAreFound) {
                   }
               }).edge_mm,
               0.003, 1e-6);
+  EXPECT_TRUE(std::isnan(after([](Template& t) { t.vertices[0].x = NAN; }).vertex_mm));
+  EXPECT_TRUE(std::isnan(after([](Template& t) {
+                           for (FaceTemplate& face : t.faces)
+                             if (auto* plane = std::get_if<Plane>(&face.surface)) {
+                               plane->frame.origin.x = NAN;
+                               break;
+                             }
+                         }).edge_mm));
 }
 
 }  // namespace

@@ -7,13 +7,12 @@
 #include <STEPControl_Reader.hxx>
 #include <algorithm>
 #include <cctype>
-#include <charconv>
 #include <istream>
 #include <mutex>
-#include <unordered_map>
 
 #include "boolean.hpp"
 #include "import_stl.hpp"
+#include "meso/brep/step_text.hpp"
 #include "meso/resource/resource.hpp"
 #include "solid_primitive.hpp"
 
@@ -72,11 +71,7 @@ std::optional<Solids> read_step(const Resource& file, ElementId where, const Sol
     context.report(Code::import_unreadable, where, {name, "it cannot be opened"});
     return {};
   }
-  if (has_bad_number(bytes->view())) {
-    context.report(Code::import_unreadable, where, {name, "it has a number that is not finite"});
-    return {};
-  }
-  if (const auto fault = reference_fault(bytes->view())) {
+  if (const auto fault = step_text_fault(bytes->view())) {
     context.report(Code::import_unreadable, where, {name, *fault});
     return {};
   }
@@ -101,70 +96,6 @@ std::optional<std::string> fault_of(const Solids& solids) {
 }
 
 }  // namespace
-
-bool has_bad_number(std::string_view step) {
-  bool in_string = false;
-  const auto is_word = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_'; };
-  for (std::size_t i = 0; i + 3 < step.size(); ++i) {
-    if (step[i] == '\'') in_string = !in_string;
-    if (in_string || is_word(step[i]) || !is_word(step[i + 1])) continue;
-    std::string word;
-    for (std::size_t k = i + 1; k < step.size() && is_word(step[k]) && word.size() < 9; ++k)
-      word += static_cast<char>(std::tolower(static_cast<unsigned char>(step[k])));
-    if (word == "nan" || word == "inf" || word == "infinity") return true;
-  }
-  return false;
-}
-
-std::optional<std::string> reference_fault(std::string_view step) {
-  // Which entity refers to which: `#12 = NAME('text', #3, (#4, #5));`.
-  std::unordered_map<std::uint64_t, std::size_t> place_of;
-  std::vector<std::vector<std::uint64_t>> references;
-  bool in_string = false, is_begin = true;
-  for (std::size_t i = 0; i < step.size(); ++i) {
-    const char c = step[i];
-    if (c == '\'') in_string = !in_string;
-    if (in_string) continue;
-    if (c == ';') is_begin = true;
-    if (c != '#') continue;
-    std::uint64_t id = 0;
-    const auto [end, error] = std::from_chars(step.data() + i + 1, step.data() + step.size(), id);
-    if (error != std::errc()) continue;
-    i = static_cast<std::size_t>(end - step.data()) - 1;
-    if (is_begin) {
-      if (!place_of.emplace(id, references.size()).second) return "it has two entities #" + std::to_string(id);
-      references.emplace_back();
-    } else if (!references.empty()) {
-      references.back().push_back(id);
-    }
-    is_begin = false;
-  }
-  // Depth first: an entity that is met while it is open closes a circle.
-  enum class State : std::uint8_t { fresh, open, done };
-  std::vector<State> states(references.size(), State::fresh);
-  std::vector<std::pair<std::size_t, std::size_t>> path;  // entity, next of its references
-  for (std::size_t root = 0; root < references.size(); ++root) {
-    if (states[root] != State::fresh) continue;
-    states[root] = State::open;
-    path.assign(1, {root, 0});
-    while (!path.empty()) {
-      auto& [entity, next] = path.back();
-      if (next == references[entity].size()) {
-        states[entity] = State::done;
-        path.pop_back();
-        continue;
-      }
-      const std::uint64_t id = references[entity][next++];
-      const auto found = place_of.find(id);
-      if (found == place_of.end()) return "it has no entity #" + std::to_string(id);
-      if (states[found->second] == State::done) continue;
-      if (states[found->second] == State::open) return "its entities refer to each other in a circle";
-      states[found->second] = State::open;
-      path.emplace_back(found->second, 0);
-    }
-  }
-  return {};
-}
 
 std::optional<Solids> import_solids(const eval::ImportShape& import, const Affine& map, ElementId where,
                                     const SolidContext& context) {

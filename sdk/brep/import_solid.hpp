@@ -17,9 +17,4 @@ namespace meso::brep {
 [[nodiscard]] std::optional<Solids> import_solids(const eval::ImportShape& import, const Affine& map, ElementId where,
                                                   const SolidContext& context);
 
-/// True if a STEP file has a number that is not one (NaN, Inf) outside its strings.
-[[nodiscard]] bool has_bad_number(std::string_view step);
-/// What is wrong with the references between a STEP file's entities: one that is missing or there twice, or a circle.
-[[nodiscard]] std::optional<std::string> reference_fault(std::string_view step);
-
 }  // namespace meso::brep

@@ -10,6 +10,7 @@
 #include <sstream>
 
 #include "boolean.hpp"
+#include "meso/brep/step_text.hpp"
 
 namespace meso::brep {
 namespace {
@@ -212,6 +213,9 @@ TEST_F(ImportSolids, CavitiesOfStlAreVoids) {
 TEST_F(ImportSolids, NumbersThatAreNone) {
   EXPECT_TRUE(has_bad_number("#1=CARTESIAN_POINT('',(0.,nan,1.));"));
   EXPECT_TRUE(has_bad_number("#1=CARTESIAN_POINT('',(0.,-INF,1.));"));
+  EXPECT_FALSE(has_bad_number("/* it's, nan */#1=A('it''s',(/*'*/1.));"));
+  EXPECT_TRUE(has_bad_number("/* it's */#1=A(nan);"));
+  EXPECT_FALSE(reference_fault("/* it's #7 */#1=A('#9');"));
   EXPECT_FALSE(has_bad_number("#1=PRODUCT('nan',(#2),'inf',INFO,NANO);"));
 }
 

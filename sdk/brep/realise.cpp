@@ -10,6 +10,7 @@
 #include "meso/brep/instance_map.hpp"
 #include "meso/brep/measure.hpp"
 #include "meso/brep/placement.hpp"
+#include "meso/brep/triangles.hpp"
 #include "meso/eval/pattern_reach.hpp"
 #include "realise_boundary.hpp"
 #include "realise_fold.hpp"
@@ -71,8 +72,7 @@ std::size_t owner_of(const Solid& piece, const Boundary& boundary) {
 }
 
 CellCounts sum_of(const CellCounts& a, const CellCounts& b) {
-  return {a.placed + b.placed, a.kept + b.kept, a.crossing + b.crossing, a.fragments + b.fragments,
-          a.dropped + b.dropped};
+  return {a.placed + b.placed, a.kept + b.kept, a.crossing + b.crossing, a.fragments + b.fragments};
 }
 
 /// How many of the solids `pieces` was cut from it has pieces of.
@@ -157,10 +157,7 @@ class PartFold {
     counts.fragments += lattice->body.fragments;
     if (lattice->body.fragments > 0) {
       const FragmentRule rule = apply.fragments.value_or(FragmentRule::keep);
-      if (rule == FragmentRule::drop) {
-        keep_largest(lattice->body);
-        counts.dropped += lattice->body.fragments;
-      }
+      if (rule == FragmentRule::drop) keep_largest(lattice->body);
       if (rule == FragmentRule::error) {
         context_.report(Code::geometry_fragments, apply.id_in_source, {part, std::to_string(lattice->body.fragments)});
         return false;
@@ -223,10 +220,18 @@ void append(Realisation& to, Realisation from) {
   for (std::size_t n = 0; n < from.clip.attempts.size(); ++n) to.clip.attempts[n] += from.clip.attempts[n];
   to.clip.edge_tolerance = std::max(to.clip.edge_tolerance, from.clip.edge_tolerance);
   to.cells.fragments += from.cells.fragments;
-  to.cells.dropped += from.cells.dropped;
   to.way = std::move(from.way);
   to.evaluate_seconds += from.evaluate_seconds;
   to.realise_seconds += from.realise_seconds;
+}
+
+/// What cannot be cleared is told: the triangles are closed, but pass through each other there.
+void clear_and_tell(Body& body, ElementId where, const SolidContext& context) {
+  const std::size_t left = clear_triangles(body, context.run);
+  if (left == 0 || context.run.should_stop()) return;
+  std::size_t all = 0;
+  visit_triangles(body, [&](std::span<const Triangle> block) { all += block.size(); });
+  context.report(Code::mesh_overlaps, where, {std::to_string(left), std::to_string(all)});
 }
 
 }  // namespace
@@ -292,7 +297,7 @@ std::optional<Realisation> realise(const eval::Evaluation& evaluation, const Par
     auto body = folded->body ? std::move(folded->body) : to_body(folded->solids, options, sink);
     if (!body) return {};
     if (!folded->body) body->pieces_volume = folded->pieces_volume;
-    if (options.mesh) clear_triangles(*body, options.run);
+    if (options.mesh) clear_and_tell(*body, part.id_in_source, context);
     result.body = std::move(*body);
     result.body.fragments = result.cells.fragments;
     result.realise_seconds = seconds_since(start);
@@ -311,7 +316,7 @@ std::optional<Body> realise_macrostructure(const eval::Evaluation& evaluation, c
   if (!solids) return {};
   try {
     auto body = to_body(*solids, options, sink);
-    if (body && options.mesh) clear_triangles(*body, options.run);
+    if (body && options.mesh) clear_and_tell(*body, macrostructure.id_in_source, context);
     return body;
   } catch (const Standard_Failure& failure) {
     context.report(Code::geometry_kernel, macrostructure.id_in_source,

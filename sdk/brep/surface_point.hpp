@@ -6,7 +6,7 @@
 
 namespace meso::brep {
 
-/// Of B-splines, and of points on an axis, the point itself.
+/// Where several are nearest, as to a centre or an axis, one of them. Of B-splines the point itself.
 [[nodiscard]] Vec3 nearest_point(const Surface& surface, Vec3 p);
 
 }  // namespace meso::brep

@@ -27,6 +27,8 @@ Json deep_json(const operations::DeepFigures& d) {
           {"triangles",
            {{"volume", d.triangles_volume},
             {"upToTheFaces", d.triangles_gap_volume},
+            {"largestGap", d.triangle_gap},
+            {"deflection", d.deflection},
             {"unmatchedHalfEdges", d.unmatched_half_edges}}},
           {"largestGap", {{"edge", d.edge_gap}, {"vertex", d.vertex_gap}}},
           {"solids", d.solids},
@@ -63,8 +65,8 @@ int verify_verb(Run& run, const std::string& file, const DeepFlags& flags) {
     json["solids"] = report->measures.solids;
     json["faces"] = report->measures.faces;
     json["triangles"] = report->triangles;
-    json["volume"] = report->measures.volume;
-    json["area"] = report->measures.area;
+    json["volume"] = report->measured ? Json(report->measures.volume) : Json();
+    json["area"] = report->measured ? Json(report->measures.area) : Json();
     json["closed"] = report->closed;
     if (!report->shell_volumes.empty()) json["shellVolumes"] = report->shell_volumes;
     for (const operations::DeepFigures& d : report->deep) json["deep"].push_back(deep_json(d));

@@ -56,7 +56,7 @@ class PartMaker {
       auto next = apply.pattern ? with_cells(std::move(body), apply) : with_part(std::move(body), apply);
       if (!next) return {};
       body = std::move(*next);
-      if (apply.fragments == FragmentRule::drop) body = without_fragments(std::move(body));
+      if (apply.fragments == FragmentRule::drop && !options_.no_fragments) body = without_fragments(std::move(body));
     }
     return body;
   }

@@ -21,7 +21,8 @@ class DeepVerify : public ::testing::Test {
   void TearDown() override { std::filesystem::remove(file_); }
 
   /// A block with four balls in it.
-  void write(const std::string& macrostructure = "<box x='0' y='-5' z='-5' dx='20' dy='10' dz='10'/>") {
+  void write(const std::string& macrostructure = "<box x='0' y='-5' z='-5' dx='20' dy='10' dz='10'/>",
+             const std::string& rule = "") {
     std::ofstream(file_)
         << "<meso xmlns='urn:meso-format:1.0' version='1.0' unit='millimeter'><macrostructures>"
            "<macrostructure id='m'><csg>" +
@@ -30,7 +31,8 @@ class DeepVerify : public ::testing::Test {
                "<unitCells><unitCell id='u'><box x='-1' y='-1' z='-1' dx='2' dy='2' dz='2'/><csg><sphere "
                "radius='1'/></csg></unitCell></unitCells><patterns><pattern id='c' unitCell='u'><loop "
                "index='i' axis='x' count='4' start='4' spacing='4'/></pattern></patterns><parts><part id='p' "
-               "macrostructure='m'><apply pattern='c' operation='difference'/></part></parts></meso>";
+               "macrostructure='m'><apply pattern='c' operation='difference' " +
+               rule + "/></part></parts></meso>";
   }
   /// Names of the checks that fail after `damage`.
   template <class Damage>
@@ -41,6 +43,9 @@ class DeepVerify : public ::testing::Test {
     VerifyReport report;
     EXPECT_TRUE(check_deep(report, *made, *made->evaluation.find_part("p"), {.points = points}, {}, sink_));
     if (!report.deep.empty()) figures_ = report.deep.front();
+    notes_ = report.notes;
+    told_ = {};
+    for (const Check& c : report.checks) told_.push_back(c.what);
     std::vector<std::string> names;
     for (const Check& c : report.checks)
       if (!c.passed) names.push_back(c.what);
@@ -56,6 +61,7 @@ class DeepVerify : public ::testing::Test {
   std::filesystem::path file_;
   DiagnosticSink sink_;
   DeepFigures figures_;
+  std::vector<std::string> notes_, told_;
 };
 
 using Names = std::vector<std::string>;
@@ -85,6 +91,39 @@ TEST_F(DeepVerify, AMissingVoid) {
   write();
   EXPECT_EQ(failures([](brep::Body& body) { body.solids[0].voids.pop_back(); }),
             (Names{"volume of pieces", "volume by points", "points misjudged"}));
+}
+
+TEST_F(DeepVerify, DroppingWhatIsNotThereHidesNothing) {
+  write("<box x='0' y='-5' z='-5' dx='20' dy='10' dz='10'/>", "fragments='drop'");
+  EXPECT_EQ(failures([](brep::Body&) {}), Names{});
+  EXPECT_TRUE(std::ranges::count(told_, "volume by points"));
+  const Names found = failures([](brep::Body& body) { body.solids[0].voids.pop_back(); });
+  EXPECT_TRUE(std::ranges::count(found, "volume by points"));
+  EXPECT_TRUE(std::ranges::count(found, "points misjudged"));
+}
+
+TEST_F(DeepVerify, WhatPointsCannotTellIsNoted) {
+  write("<cylinder x1='0' y1='0' z1='0' x2='20' y2='0' z2='0' radius='0.5'/>", "fragments='drop'");
+  EXPECT_EQ(failures([](brep::Body&) {}), Names{});
+  EXPECT_EQ(figures_.solids, 1u);
+  EXPECT_FALSE(std::ranges::count(told_, "volume by points"));
+  EXPECT_TRUE(
+      std::ranges::any_of(notes_, [](const auto& n) { return n.starts_with("volume by points: not checked"); }));
+  EXPECT_TRUE(std::ranges::any_of(notes_, [](const auto& n) { return n.starts_with("points misjudged: no point"); }));
+}
+
+TEST_F(DeepVerify, TrianglesFarFromTheirFaces) {
+  write();
+  const Names found = failures([](brep::Body& body) {
+    brep::Template changed = *body.solids[0].voids[0].geometry;
+    for (brep::FaceTemplate& face : changed.faces)
+      for (brep::MeshPoint& p : face.mesh.points) {
+        const Vec3 centre = std::get<brep::SphereSurface>(face.surface).frame.origin;
+        p.point = centre + 0.9 * (p.point - centre);
+      }
+    body.solids[0].voids[0].geometry = std::make_shared<const brep::Template>(std::move(changed));
+  });
+  EXPECT_TRUE(std::ranges::count(found, "triangles from faces"));
 }
 
 TEST_F(DeepVerify, AMissingShell) {

@@ -7,8 +7,8 @@
 
 namespace meso::operations {
 
-/// Adds the checks "volume by points" and "points misjudged". False with a diagnostic: evaluation failed, or the run
-/// was stopped.
+/// Adds the checks "volume by points" and "points misjudged", or a note where the points tell nothing. False with a
+/// diagnostic: evaluation failed, or the run was stopped.
 [[nodiscard]] bool check_points(VerifyReport& report, DeepFigures& figures, const Made& made, const Part& part,
                                 const DeepCheck& deep, const RunOptions& run, DiagnosticSink& sink);
 

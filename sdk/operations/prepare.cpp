@@ -19,7 +19,8 @@ const MeshSettings* document_mesh(const Document& document, const std::string& p
   return nullptr;
 }
 
-/// Smallest edge of the constant cell boxes, in millimetres.
+}  // namespace
+
 std::optional<double> smallest_cell_edge(const eval::Evaluation& evaluation) {
   std::optional<double> smallest;
   DiagnosticSink ignored;
@@ -39,6 +40,8 @@ std::optional<double> smallest_cell_edge(const eval::Evaluation& evaluation) {
   }
   return smallest;
 }
+
+namespace {
 
 struct Fineness {
   double deflection_mm = 0, angle_rad = 0;

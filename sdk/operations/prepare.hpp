@@ -20,4 +20,7 @@ struct Prepared {
 [[nodiscard]] std::optional<Prepared> prepare(const std::filesystem::path& document, const MakeOptions& options,
                                               DiagnosticSink& sink);
 
+/// Smallest edge of the boxes of the patterns' first cells, in millimetres.
+[[nodiscard]] std::optional<double> smallest_cell_edge(const eval::Evaluation& evaluation);
+
 }  // namespace meso::operations

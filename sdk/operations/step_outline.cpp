@@ -1,24 +1,28 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "step_outline.hpp"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <span>
 #include <unordered_map>
 #include <vector>
 
+#include "meso/brep/step_text.hpp"
+
 namespace meso::operations {
 namespace {
 
-enum class Kind : std::uint8_t { other, edge, use, loop, bound, face, shell, turned_shell, solid };
+enum class Kind : std::uint8_t { other, edge, use, loop, vertex_loop, bound, face, shell, turned_shell, solid };
 
 struct KindName {
   std::string_view name;
   Kind kind;
 };
-constexpr std::array<KindName, 11> kinds{{{"EDGE_CURVE", Kind::edge},
+constexpr std::array<KindName, 12> kinds{{{"EDGE_CURVE", Kind::edge},
                                           {"ORIENTED_EDGE", Kind::use},
                                           {"EDGE_LOOP", Kind::loop},
+                                          {"VERTEX_LOOP", Kind::vertex_loop},
                                           {"FACE_BOUND", Kind::bound},
                                           {"FACE_OUTER_BOUND", Kind::bound},
                                           {"ADVANCED_FACE", Kind::face},
@@ -56,33 +60,34 @@ class Outliner {
       for (const std::uint64_t shell : references(entities_[solid]))
         if (!add_shell(shell)) return {};
     }
-    if (outline_.solids == 0) fault_ = "no solid in it";
-    return outline_.solids > 0 ? std::optional(outline_) : std::nullopt;
+    if (outline_.solids == 0) return fault_ = "no solid in it", std::nullopt;
+    if (outline_.edges == 0) return fault_ = "its faces have no edges", std::nullopt;
+    return outline_;
   }
 
  private:
   bool read() {
-    for (std::size_t at = text_.find('#'); at != std::string_view::npos; at = text_.find('#', at)) {
-      if ((entities_.size() & 0xffff) == 0 && run_.should_stop()) return false;
-      if (!read_entity(at)) return false;
+    for (std::size_t at = 0; at < text_.size();) {
+      if (text_[at] != '#')
+        at = std::max(at + 1, brep::behind_string_or_comment(text_, at));
+      else if (((entities_.size() & 0xffff) == 0 && run_.should_stop()) || !read_entity(at))
+        return false;
     }
     return true;
   }
 
-  /// From its `#` to behind its semicolon. Other text, such as the header's, is passed over.
+  /// From its `#` to behind its semicolon.
   bool read_entity(std::size_t& at) {
     std::uint64_t id = 0;
     if (!read_id(at, id)) return true;
-    const std::size_t name = text_.find_first_not_of(" \t\r\n=", at);
-    const std::size_t open = text_.find('(', at);
-    if (open == std::string_view::npos) return at = text_.size(), true;
-    Entity entity{.first = static_cast<std::uint32_t>(references_.size())};
-    if (name < open) {
-      std::string_view word = text_.substr(name, open - name);
-      word = word.substr(0, word.find_last_not_of(" \t\r\n") + 1);
-      entity.kind = kind_of(word);
-    }
-    if (!read_arguments(open, at, entity)) return false;
+    skip_blanks(at);
+    if (at < text_.size() && text_[at] == '=') skip_blanks(++at);
+    const auto is_of_name = [](char c) { return (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_'; };
+    const std::size_t name = at;
+    while (at < text_.size() && is_of_name(text_[at])) ++at;
+    Entity entity{.kind = kind_of(text_.substr(name, at - name)),
+                  .first = static_cast<std::uint32_t>(references_.size())};
+    if (!read_arguments(at, entity)) return false;
     if (entity.kind == Kind::other) return true;
     if (!place_of_.emplace(id, static_cast<std::uint32_t>(entities_.size())).second)
       return fault_ = "it has two entities #" + std::to_string(id), false;
@@ -91,23 +96,29 @@ class Outliner {
     return true;
   }
 
-  bool read_arguments(std::size_t open, std::size_t& at, Entity& entity) {
-    for (at = open; at < text_.size(); ++at) {
+  void skip_blanks(std::size_t& at) const {
+    while (at < text_.size()) {
+      const std::size_t behind = text_[at] == '/' ? brep::behind_string_or_comment(text_, at) : at;
+      if (behind == at && std::string_view(" \t\r\n").find(text_[at]) == std::string_view::npos) return;
+      at = std::max(at + 1, behind);
+    }
+  }
+
+  bool read_arguments(std::size_t& at, Entity& entity) {
+    while (at < text_.size()) {
       const char c = text_[at];
       if (c == ';') {
         entity.count = static_cast<std::uint32_t>(references_.size()) - entity.first;
         return ++at, true;
       }
-      if (c == '\'') {
-        at = text_.find('\'', at + 1);
-        if (at == std::string_view::npos) break;
-      } else if (entity.kind != Kind::other && c == '.' &&
-                 (text_.substr(at, 3) == ".T." || text_.substr(at, 3) == ".F.")) {
+      if (entity.kind != Kind::other && c == '.' && (text_.substr(at, 3) == ".T." || text_.substr(at, 3) == ".F.")) {
         entity.is_true = text_[at + 1] == 'T';
-        at += 2;
+        at += 3;
       } else if (entity.kind != Kind::other && c == '#') {
         std::uint64_t id = 0;
-        if (read_id(at, id)) references_.push_back(id), --at;
+        if (read_id(at, id)) references_.push_back(id);
+      } else {
+        at = std::max(at + 1, brep::behind_string_or_comment(text_, at));
       }
     }
     return fault_ = "it ends within an entity", false;
@@ -133,10 +144,12 @@ class Outliner {
   bool add_shell(std::uint64_t id) {
     if (run_.should_stop()) return false;
     const auto place = place_of_.find(id);
-    if (place != place_of_.end() && entities_[place->second].kind == Kind::turned_shell)
-      for (const std::uint64_t inner : references(entities_[place->second])) return add_shell(inner);
+    if (place != place_of_.end() && entities_[place->second].kind == Kind::turned_shell &&
+        entities_[place->second].count > 0)
+      id = references(entities_[place->second])[0];
     const Entity* shell = find(id, Kind::shell);
     if (shell == nullptr) return false;
+    if (shell->count == 0) return fault_ = "shell #" + std::to_string(id) + " has no faces", false;
     std::unordered_map<std::uint64_t, Uses> uses;
     ++outline_.shells;
     for (const std::uint64_t f : references(*shell)) {
@@ -160,7 +173,7 @@ class Outliner {
     const Entity* bound = find(id, Kind::bound);
     if (bound == nullptr || bound->count != 1) return false;
     const auto place = place_of_.find(references(*bound)[0]);
-    if (place == place_of_.end()) return true;  // a loop of one vertex, which has no edge
+    if (place != place_of_.end() && entities_[place->second].kind == Kind::vertex_loop) return true;
     const Entity* loop = find(references(*bound)[0], Kind::loop);
     if (loop == nullptr) return false;
     std::uint64_t first = 0, last = 0;

@@ -23,7 +23,8 @@ struct StepOutline {
   std::uint64_t free_edges = 0, multiple_edges = 0, conflicts = 0, open_loops = 0;
 };
 
-/// Nothing, and why: no solid, or an entity that is missing or of an unexpected kind; or, without a reason, stopped.
+/// Nothing, and why: no solid, a shell without faces, none with edges, or an entity that is missing or of an unexpected
+/// kind; or, without a reason, stopped.
 [[nodiscard]] std::optional<StepOutline> outline_step(std::string_view text, const RunOptions& run, std::string& fault);
 
 /// Number of faces, quickly.

@@ -57,6 +57,34 @@ TEST(StepOutline, AnEdgeThatIsTurnedOpensItsLoop) {
   EXPECT_EQ(found.conflicts, 1u);
 }
 
+TEST(StepOutline, StringsAndCommentsArePassedOver) {
+  std::string text = beam();
+  text.insert(text.find("DATA;"), "FILE_NAME('part #3 (rev B''s)'); /* it's #1 = ( */ ");
+  const auto shell = text.find("CLOSED_SHELL(");
+  text.insert(shell, "/* it's; */");
+  text.insert(text.find('(', shell) + 1, "/* ; ' */ ");
+  const StepOutline found = outline_of(text);
+  EXPECT_EQ(found.faces, 14u);
+  EXPECT_EQ(found.edges, 36u);
+  EXPECT_EQ(found.free_edges + found.multiple_edges + found.conflicts + found.open_loops, 0u);
+}
+
+TEST(StepOutline, WhatIsNoLoopIsToldAndNotTakenForAVertex) {
+  std::string text = beam();
+  const auto use = text.find("EDGE_LOOP(");
+  text.replace(use, 9, "POLY_LOOP");
+  std::string fault;
+  EXPECT_FALSE(outline_step(text, {}, fault));
+  EXPECT_NE(fault.find("is not what refers to it expects"), std::string::npos);
+}
+
+TEST(StepOutline, AShellThatIsItselfTurned) {
+  std::string fault;
+  EXPECT_FALSE(outline_step("#1=ORIENTED_CLOSED_SHELL('',*,#1,.T.);#2=BREP_WITH_VOIDS('',#1);", {}, fault));
+  EXPECT_FALSE(outline_step("#1=CLOSED_SHELL('',());#2=MANIFOLD_SOLID_BREP('',#1);", {}, fault));
+  EXPECT_EQ(fault, "shell #1 has no faces");
+}
+
 TEST(StepOutline, WhatIsNoSolid) {
   std::string fault;
   EXPECT_FALSE(outline_step("ISO-10303-21;", {}, fault));

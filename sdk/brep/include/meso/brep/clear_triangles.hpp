@@ -2,7 +2,7 @@
 #pragma once
 // Divides triangles of a meshed body until none passes through another.
 //
-//   clear_triangles(body, run);   // the STL has no self-contacts
+//   if (clear_triangles(body, run) == 0) ...   // the STL has no self-contacts
 //
 // Chords leave their surfaces. Where two faces come close (struts that part at a sharp angle, a thin wall between two
 // balls) triangles of one can pass through those of the other although the surfaces keep apart. Segments of such
@@ -16,7 +16,8 @@
 
 namespace meso::brep {
 
-/// How many triangles meet others: zero, but where bodies touch or the run was to stop; then `body` is as it was.
-std::size_t clear_triangles(Body& body, const RunOptions& run);
+/// How many of the given triangles meet others and are left as they are, but where a neighbour's division cuts them:
+/// zero, but where surfaces touch or the run was to stop. Where it was, `body` is as it was.
+[[nodiscard]] std::size_t clear_triangles(Body& body, const RunOptions& run);
 
 }  // namespace meso::brep

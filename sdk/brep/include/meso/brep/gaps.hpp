@@ -6,7 +6,7 @@
 //   const Gaps g = measure_gaps(body);      // g.edge_mm: what OpenCASCADE would call the largest edge tolerance
 //
 // Each template face is looked at once, however often it stands in the body: 7 points of each triangle, 9 of each edge.
-// Cost: about 0.2 us a point, 20 us on B-spline surfaces. Thread rule: pure.
+// What cannot be measured is NaN. Cost: about 0.2 us a point, 20 us on B-spline surfaces. Thread rule: pure.
 
 #include "meso/brep/body.hpp"
 

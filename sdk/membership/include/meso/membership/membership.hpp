@@ -38,6 +38,7 @@ using ImportReader = std::function<std::optional<ImportedSolid>(const eval::Impo
 struct Options {
   ImportReader imports{};
   RunOptions run{};
+  bool no_fragments = false;  ///< it is known that cuts leave no loose fragments: then dropping them drops nothing
 };
 
 class Membership {

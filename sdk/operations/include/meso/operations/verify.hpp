@@ -29,7 +29,8 @@ struct DeepFigures {
   double difference = 0;                             ///< of the exact volume from them; 0 between them
   double triangles_volume = 0;                       ///< of the triangles
   double triangles_gap_volume = 0;                   ///< between the triangles and the exact faces
-  double edge_gap = 0, vertex_gap = 0;               ///< largest distances: edges from faces, vertices from edges
+  double triangle_gap = 0, deflection = 0;  ///< largest distance of a triangle from its face; what was asked for
+  double edge_gap = 0, vertex_gap = 0;      ///< largest distances: edges from faces, vertices from edges
   std::uint64_t solids = 0, fragments = 0;
   std::uint64_t unmatched_half_edges = 0;  ///< of the triangles as STL has them
   std::vector<double> shell_volumes;       ///< voids are negative
@@ -42,6 +43,7 @@ struct VerifyReport {
   std::vector<DeepFigures> deep;      ///< one for each part
   std::vector<double> shell_volumes;  ///< of a STEP file, voids negative, in the order of their size; mm3
   brep::Measures measures;
+  bool measured = true;  ///< false: volume, area and the like of `measures` are not known, its counts are
   bool closed = false;
   std::uint64_t triangles = 0;  ///< STL only
   [[nodiscard]] bool passed() const;
