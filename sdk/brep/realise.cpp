@@ -72,7 +72,8 @@ std::size_t owner_of(const Solid& piece, const Boundary& boundary) {
 }
 
 CellCounts sum_of(const CellCounts& a, const CellCounts& b) {
-  return {a.placed + b.placed, a.kept + b.kept, a.crossing + b.crossing, a.fragments + b.fragments};
+  return {a.placed + b.placed, a.kept + b.kept, a.crossing + b.crossing, a.fragments + b.fragments,
+          a.dropped + b.dropped};
 }
 
 /// How many of the solids `pieces` was cut from it has pieces of.
@@ -157,7 +158,10 @@ class PartFold {
     counts.fragments += lattice->body.fragments;
     if (lattice->body.fragments > 0) {
       const FragmentRule rule = apply.fragments.value_or(FragmentRule::keep);
-      if (rule == FragmentRule::drop) keep_largest(lattice->body);
+      if (rule == FragmentRule::drop) {
+        keep_largest(lattice->body);
+        counts.dropped += lattice->body.fragments;
+      }
       if (rule == FragmentRule::error) {
         context_.report(Code::geometry_fragments, apply.id_in_source, {part, std::to_string(lattice->body.fragments)});
         return false;
@@ -220,6 +224,7 @@ void append(Realisation& to, Realisation from) {
   for (std::size_t n = 0; n < from.clip.attempts.size(); ++n) to.clip.attempts[n] += from.clip.attempts[n];
   to.clip.edge_tolerance = std::max(to.clip.edge_tolerance, from.clip.edge_tolerance);
   to.cells.fragments += from.cells.fragments;
+  to.cells.dropped += from.cells.dropped;
   to.way = std::move(from.way);
   to.evaluate_seconds += from.evaluate_seconds;
   to.realise_seconds += from.realise_seconds;
