@@ -12,6 +12,7 @@
 #include "face_moments.hpp"
 #include "meso/base/number.hpp"
 #include "point_within.hpp"
+#include "slabs.hpp"
 #include "stop_watch.hpp"
 
 namespace meso::brep {
@@ -21,27 +22,30 @@ constexpr double volume_tolerance = 1e-6;  ///< relative, of the identity
 // Surfaces that nearly coincide intersect in edges that are barely known; those agree with every identity and are
 // wrong.
 constexpr double edge_tolerance_mm = 1e-4;
+// Measured, see docs/architecture-cutters.md: 128 and 256 take as long, and 256 more memory.
+constexpr std::size_t slab_tools = 128;
 constexpr std::size_t points_each = 16;  ///< of a piece, looked at one by one
 
-bool boxes_meet(const TopoDS_Shape& a, const TopoDS_Shape& b) {
-  Bnd_Box box_a, box_b;
-  BRepBndLib::Add(a, box_a);
-  BRepBndLib::Add(b, box_b);
-  return !box_a.IsOut(box_b);
+std::vector<Bnd_Box> boxes_of(const Solids& solids) {
+  std::vector<Bnd_Box> boxes(solids.size());
+  for (std::size_t i = 0; i < solids.size(); ++i) BRepBndLib::Add(solids[i], boxes[i]);
+  return boxes;
 }
 
 Solids near(const Solids& solids, const Solids& others) {
+  const std::vector<Bnd_Box> other_boxes = boxes_of(others);
   Solids out;
   std::ranges::copy_if(solids, std::back_inserter(out), [&](const TopoDS_Shape& solid) {
-    return std::ranges::any_of(others, [&](const TopoDS_Shape& other) { return boxes_meet(solid, other); });
+    Bnd_Box box;
+    BRepBndLib::Add(solid, box);
+    return std::ranges::any_of(other_boxes, [&](const Bnd_Box& other) { return !box.IsOut(other); });
   });
   return out;
 }
 
 /// Solids that are connected by boxes that meet, in order of their first.
 std::vector<Solids> groups_by_box(const Solids& solids) {
-  std::vector<Bnd_Box> boxes(solids.size());
-  for (std::size_t i = 0; i < solids.size(); ++i) BRepBndLib::Add(solids[i], boxes[i]);
+  const std::vector<Bnd_Box> boxes = boxes_of(solids);
   std::vector<bool> taken(solids.size(), false);
   std::vector<Solids> groups;
   for (std::size_t first = 0; first < solids.size(); ++first) {
@@ -161,6 +165,7 @@ class Pieces {
 
 struct Attempt {
   std::optional<Solids> solids;
+  CutImages images;   ///< of the objects
   std::string fault;  ///< why not
 };
 
@@ -186,6 +191,18 @@ std::optional<std::string> fault_of(const BOPAlgo_BOP& operation, BOPAlgo_Operat
   return "its volume is " + format_number(volume) + " mm3 where the pieces have " + format_number(expected) + " mm3";
 }
 
+CutImages images_of(const Solids& objects, BOPAlgo_BOP& operation) {
+  TopTools_IndexedMapOfShape parts;
+  for (const TopoDS_Shape& object : objects)
+    for (const auto kind : {TopAbs_FACE, TopAbs_EDGE, TopAbs_VERTEX}) TopExp::MapShapes(object, kind, parts);
+  CutImages images;
+  for (int i = 1; i <= parts.Extent(); ++i)
+    if (const TopTools_ListOfShape& left = operation.Modified(parts(i));
+        !left.IsEmpty() || operation.IsDeleted(parts(i)))
+      images.Bind(parts(i), left);
+  return images;
+}
+
 Attempt attempt(BOPAlgo_Operation kind, const Solids& objects, const Solids& tools, double fuzzy,
                 const RunOptions& run) {
   Solids all = objects;
@@ -200,17 +217,17 @@ Attempt attempt(BOPAlgo_Operation kind, const Solids& objects, const Solids& too
   filler.SetUseOBB(true);
   filler.SetFuzzyValue(fuzzy);
   filler.Perform(scope.Next());
-  if (filler.HasErrors()) return {{}, "the bodies cannot be intersected"};
+  if (filler.HasErrors()) return {{}, {}, "the bodies cannot be intersected"};
   BOPAlgo_BOP operation;
   for (const TopoDS_Shape& object : objects) operation.AddArgument(object);
   for (const TopoDS_Shape& tool : tools) operation.AddTool(tool);
   operation.SetOperation(kind);
   operation.SetRunParallel(true);
   operation.PerformWithFiller(filler, scope.Next());
-  if (operation.HasErrors() || operation.Shape().IsNull()) return {{}, "the pieces cannot be put together"};
+  if (operation.HasErrors() || operation.Shape().IsNull()) return {{}, {}, "the pieces cannot be put together"};
   Solids result = solids_of(operation.Shape());
-  if (auto fault = fault_of(operation, kind, objects, tools, result)) return {{}, *fault};
-  return {std::move(result), {}};
+  if (auto fault = fault_of(operation, kind, objects, tools, result)) return {{}, {}, *fault};
+  return {std::move(result), images_of(objects, operation), {}};
 }
 
 void warn_of_contacts(const Solids& solids, ElementId where, const SolidContext& context) {
@@ -220,14 +237,14 @@ void warn_of_contacts(const Solids& solids, ElementId where, const SolidContext&
 }
 
 std::optional<Solids> checked(BOPAlgo_Operation kind, const Solids& objects, const Solids& tools, ElementId where,
-                              const SolidContext& context) {
+                              const SolidContext& context, CutImages* images = nullptr) {
   std::string fault;
   for (const double fuzzy : {0.0, 1e-6, 1e-5}) {
     if (context.run.should_stop()) break;
     try {
       Attempt result = attempt(kind, objects, tools, fuzzy, context.run);
       if (result.solids) {
-        warn_of_contacts(*result.solids, where, context);
+        if (images != nullptr) *images = std::move(result.images);
         return std::move(result.solids);
       }
       if (fault.empty()) fault = result.fault;
@@ -294,6 +311,7 @@ std::optional<Solids> fuse(const Solids& operands, ElementId where, const SolidC
                             ? std::optional(group)
                             : checked(BOPAlgo_FUSE, {group.front()}, {group.begin() + 1, group.end()}, where, context);
     if (!joined) return {};
+    if (group.size() > 1) warn_of_contacts(*joined, where, context);
     all.insert(all.end(), joined->begin(), joined->end());
   }
   return all;
@@ -302,13 +320,32 @@ std::optional<Solids> fuse(const Solids& operands, ElementId where, const SolidC
 std::optional<Solids> common(const Solids& a, const Solids& b, ElementId where, const SolidContext& context) {
   const Solids near_a = near(a, b), near_b = near(b, a);
   if (near_a.empty() || near_b.empty()) return Solids{};
-  return checked(BOPAlgo_COMMON, near_a, near_b, where, context);
+  auto shared = checked(BOPAlgo_COMMON, near_a, near_b, where, context);
+  if (shared) warn_of_contacts(*shared, where, context);
+  return shared;
 }
 
 std::optional<Solids> cut(const Solids& base, const Solids& tools, ElementId where, const SolidContext& context) {
   const Solids near_tools = near(tools, base);
-  if (near_tools.empty() || base.empty()) return base;
-  return checked(BOPAlgo_CUT, base, near_tools, where, context);
+  if (near_tools.size() > slab_tools) return cut(base, groups_by_box(near_tools), where, context);
+  return cut(base, std::vector<Solids>{near_tools}, where, context);
+}
+
+std::optional<Solids> cut(const Solids& base, const std::vector<Solids>& clusters, ElementId where,
+                          const SolidContext& context) {
+  if (base.empty() || std::ranges::all_of(clusters, &Solids::empty)) return base;
+  // A slab pays for all faces of the base again.
+  TopTools_IndexedMapOfShape faces;
+  for (const TopoDS_Shape& solid : base) TopExp::MapShapes(solid, TopAbs_FACE, faces);
+  const auto size = std::max(slab_tools, static_cast<std::size_t>(faces.Extent()));
+  auto left = cut_in_slabs(base, clusters, size, where, context);
+  if (left) warn_of_contacts(*left, where, context);
+  return left;
+}
+
+std::optional<Solids> cut_at_once(const Solids& base, const Solids& tools, ElementId where, const SolidContext& context,
+                                  CutImages* images) {
+  return checked(BOPAlgo_CUT, base, tools, where, context, images);
 }
 
 }  // namespace meso::brep

@@ -9,6 +9,7 @@
 // tolerance of 1e-6 and 1e-5 mm, then reported as GEOMETRY_BOOLEAN. A stop asked for by the run options is CANCELLED or
 // LIMIT_TIME. Cost: about 0.05 s per solid that meets others, and 0.1 ms per face for the check.
 
+#include <TopTools_DataMapOfShapeListOfShape.hxx>
 #include <optional>
 
 #include "solid_context.hpp"
@@ -33,8 +34,17 @@ struct EdgeUses {
 [[nodiscard]] std::optional<Solids> fuse(const Solids& operands, ElementId where, const SolidContext& context);
 [[nodiscard]] std::optional<Solids> common(const Solids& a, const Solids& b, ElementId where,
                                            const SolidContext& context);
-/// `tools` may overlap each other.
+/// `tools` may overlap each other. Many are cut in slabs: see slabs.hpp.
 [[nodiscard]] std::optional<Solids> cut(const Solids& base, const Solids& tools, ElementId where,
                                         const SolidContext& context);
+/// Of tools in clusters that keep clear of each other.
+[[nodiscard]] std::optional<Solids> cut(const Solids& base, const std::vector<Solids>& clusters, ElementId where,
+                                        const SolidContext& context);
+
+/// The faces, edges and vertices of a base that a cut has changed, and what is left of each.
+using CutImages = TopTools_DataMapOfShapeListOfShape;
+/// All tools in one boolean.
+[[nodiscard]] std::optional<Solids> cut_at_once(const Solids& base, const Solids& tools, ElementId where,
+                                                const SolidContext& context, CutImages* images = nullptr);
 
 }  // namespace meso::brep
