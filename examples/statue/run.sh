@@ -39,8 +39,8 @@ sed '/<apply/,/<\/validation>/d' statue-stl.meso > body.meso
 # The copies inside it, exactly and as triangles.
 "$meso" convert statue.meso hollow.step
 "$meso" convert statue-stl.meso hollow.stl --json > hollow.json
-"$meso" verify --deep statue-stl.meso
-"$meso" verify --deep statue.meso
+"$meso" verify --deep --points 50000 statue-stl.meso
+"$meso" verify --deep --points 50000 statue.meso
 "$meso" verify hollow.stl
 "$meso" compare statue.meso statue-stl.meso
 
