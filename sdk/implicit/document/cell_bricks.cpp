@@ -28,7 +28,7 @@ struct Shared {
       inverse_spacing[a] = 1 / grid.spacing(a);
     }
     // Both ends of an edge that the surface crosses are exact, and everything within the band.
-    margin = band + edge * std::max(1.0, cells->lipschitz()) * (1 + 1e-9);
+    exact_within = margin = band + edge * std::max(1.0, cells->lipschitz()) * (1 + 1e-9);
     is_exact = !(margin < cells->reach());
     if (is_exact) margin = cells->reach();
     far = is_exact ? margin : 2 * margin;
@@ -45,6 +45,7 @@ struct Shared {
   StrutRow row;
   std::array<std::int32_t, 3> counts{};
   double margin = 0, radius = 0;
+  double exact_within = 0;  ///< of rows: no more than is asked beside a surface, which is kept in memory
   double far = 0;         ///< what stands where nothing is near
   bool is_exact = false;  ///< values count everywhere, deep inside too
   Vec3 half;              ///< of a brick's box in the field's space
@@ -234,7 +235,7 @@ class PreparedBricks final : public ExternalField::Prepared {
  public:
   explicit PreparedBricks(std::shared_ptr<const Shared> shared) : shared_(std::move(shared)) {}
   [[nodiscard]] std::unique_ptr<ExternalRows> make_rows() const override { return std::make_unique<Rows>(shared_); }
-  [[nodiscard]] double exact_within() const override { return shared_->is_exact ? HUGE_VAL : shared_->margin; }
+  [[nodiscard]] double exact_within() const override { return shared_->exact_within; }
 
  private:
   std::shared_ptr<const Shared> shared_;
