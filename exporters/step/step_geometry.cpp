@@ -19,31 +19,48 @@ Pose::Pose(const Shell& shell)
 
 void Pose::set_cell(const Index3& cell) { cell_origin_ = brep::cell_origin(geometry_, cell); }
 
-std::size_t StepGeometry::VecHash::operator()(const Vec3& v) const {
+std::size_t Directions::Hash::operator()(const Vec3& v) const {
   std::uint64_t h = 0;
   for (const double c : {v.x, v.y, v.z}) h = std::rotl((h ^ std::bit_cast<std::uint64_t>(c)) * 0x9e3779b97f4a7c15u, 29);
   return h;
 }
 
-StepGeometry::DirectionIds& StepGeometry::ids_of(Vec3 unit) {
-  constexpr std::size_t most_directions = 200'000;
-  const Vec3 key = unit + Vec3{0, 0, 0};  // -0 and 0 are one direction
-  if (const auto known = directions_.find(key); known != directions_.end()) return known->second;
-  if (directions_.size() >= most_directions) directions_.clear();
-  return directions_[key];
+const Directions::Ids* Directions::find(Vec3 unit) const {
+  const auto known = ids_.find(unit + Vec3{0, 0, 0});  // -0 and 0 are one direction
+  return known == ids_.end() ? nullptr : &known->second;
+}
+
+Directions::Ids* Directions::find_or_add(Vec3 unit) {
+  constexpr std::size_t most = 200'000;
+  if (ids_.size() < most) return &ids_[unit + Vec3{0, 0, 0}];
+  const auto known = ids_.find(unit + Vec3{0, 0, 0});
+  return known == ids_.end() ? nullptr : &known->second;
+}
+
+/// The number of an entity along `unit`, written when it is first used.
+template <typename Write>
+StepId StepGeometry::once(Vec3 unit, StepId Directions::Ids::*id, Write write) {
+  if (growing_ != nullptr) {
+    Directions::Ids* const ids = growing_->find_or_add(unit);
+    if (ids == nullptr) return write();
+    if (ids->*id == 0) {
+      const StepId written = write();  // may move what `ids` points to
+      growing_->find_or_add(unit)->*id = written;
+      return written;
+    }
+    return ids->*id;
+  }
+  const Directions::Ids* const ids = known_.find(unit);
+  return ids == nullptr || ids->*id > text_.last() ? write() : ids->*id;
 }
 
 StepId StepGeometry::direction(Vec3 unit) {
-  StepId& id = ids_of(unit).direction;
-  if (id == 0) id = text_.entity("DIRECTION", NoName{}, unit);
-  return id;
+  return once(unit, &Directions::Ids::direction, [&] { return text_.entity("DIRECTION", NoName{}, unit); });
 }
 
 StepId StepGeometry::vector(Vec3 unit) {
   const StepId along = direction(unit);
-  StepId& id = ids_of(unit).vector;
-  if (id == 0) id = text_.entity("VECTOR", NoName{}, Ref{along}, 1.0);
-  return id;
+  return once(unit, &Directions::Ids::vector, [&] { return text_.entity("VECTOR", NoName{}, Ref{along}, 1.0); });
 }
 
 StepId StepGeometry::frame(const AxisFrame& frame, const Pose& pose) {

@@ -27,9 +27,30 @@ class Pose {
   Vec3 cell_origin_;
 };
 
+/// The numbers of directions and of vectors along them. Lattices repeat few; beyond a bound, so that a million rotated
+/// cells need no memory, a direction is written each time.
+class Directions {
+ public:
+  struct Ids {
+    StepId direction = 0, vector = 0;
+  };
+  /// Null: it is not kept.
+  [[nodiscard]] const Ids* find(Vec3 unit) const;
+  [[nodiscard]] Ids* find_or_add(Vec3 unit);
+
+ private:
+  struct Hash {
+    std::size_t operator()(const Vec3& v) const;
+  };
+  std::unordered_map<Vec3, Ids, Hash> ids_;
+};
+
 class StepGeometry {
  public:
-  explicit StepGeometry(StepText& text) : text_(text) {}
+  /// Numbers the directions that it writes.
+  StepGeometry(StepText& text, Directions& numbers) : text_(text), growing_(&numbers), known_(numbers) {}
+  /// Directions have been numbered: what has a number beyond the last one written is to be written now.
+  StepGeometry(StepText& text, const Directions& numbers) : text_(text), known_(numbers) {}
 
   [[nodiscard]] StepId point(Vec3 placed) { return text_.entity("CARTESIAN_POINT", NoName{}, placed); }
   [[nodiscard]] StepId surface(const brep::Surface& surface, const Pose& pose);
@@ -52,18 +73,12 @@ class StepGeometry {
   [[nodiscard]] StepId write(const brep::Ellipse& c, const Pose& pose);
   [[nodiscard]] StepId write(const brep::BSplineCurve& c, const Pose& pose);
 
-  // Lattices repeat few directions. Emptied when full, so that a million rotated cells need no memory: a direction is
-  // then written again.
-  struct VecHash {
-    std::size_t operator()(const Vec3& v) const;
-  };
-  struct DirectionIds {
-    StepId direction = 0, vector = 0;
-  };
-  DirectionIds& ids_of(Vec3 unit);
+  template <typename Write>
+  StepId once(Vec3 unit, StepId Directions::Ids::*id, Write write);
 
   StepText& text_;
-  std::unordered_map<Vec3, DirectionIds, VecHash> directions_;
+  Directions* growing_ = nullptr;
+  const Directions& known_;
 };
 
 }  // namespace meso::step

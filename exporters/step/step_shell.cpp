@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "step_shell.hpp"
 
+#include "sphere_frame.hpp"
+
 namespace meso::step {
 
 using namespace brep;
@@ -13,8 +15,17 @@ StepId ShellWriter::write_face(const FaceInstance& instance) {
     bounds_.push_back(text_.entity("FACE_BOUND", NoName{}, Ref{written}, true));
   }
   pose_.set_cell(instance.cell);
-  const StepId surface = geometry_.surface(face.surface, pose_);
+  const StepId surface = write_surface(instance.face);
   return text_.entity("ADVANCED_FACE", NoName{}, bounds_, Ref{surface}, !face.reversed);
+}
+
+StepId ShellWriter::write_surface(std::uint32_t face) {
+  const Surface& surface = template_.faces[face].surface;
+  const auto* sphere = std::get_if<SphereSurface>(&surface);
+  if (sphere == nullptr) return geometry_.surface(surface, pose_);
+  if (growing_ != nullptr && !growing_->sphere_frames.contains(face))
+    growing_->sphere_frames[face] = clear_frame(*sphere, template_.faces[face], template_);
+  return geometry_.surface(SphereSurface{known_.sphere_frames.at(face), sphere->radius}, pose_);
 }
 
 // Edges without a curve (poles, apexes) have no place in STEP; a loop of nothing else is a point.

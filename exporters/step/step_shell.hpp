@@ -2,6 +2,7 @@
 #pragma once
 // The topology of one shell: faces, their loops, and the edges and vertices that several of them share.
 
+#include <map>
 #include <vector>
 
 #include "meso/brep/instance_map.hpp"
@@ -14,6 +15,7 @@ namespace meso::step {
 struct ShellNumbers {
   brep::InstanceMap<StepId> vertices, edges;
   std::vector<StepId> faces;
+  std::map<std::uint32_t, brep::AxisFrame> sphere_frames;  ///< by face of the template: see clear_frame()
 };
 
 /// Vertices and edges are written when a face first uses them, and never twice.
@@ -35,6 +37,7 @@ class ShellWriter {
   StepId write_face(const brep::FaceInstance& instance);
 
  private:
+  [[nodiscard]] StepId write_surface(std::uint32_t face);
   StepId write_loop(const std::vector<brep::Coedge>& loop, const brep::Index3& cell);
   StepId edge_id(std::uint32_t index, const brep::Index3& cell);
   StepId vertex_id(std::uint32_t index, const brep::Index3& cell);

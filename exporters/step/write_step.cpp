@@ -4,6 +4,7 @@
 #include <deque>
 #include <map>
 #include <optional>
+#include <utility>
 
 #include "meso/base/ordered_blocks.hpp"
 #include "step_document.hpp"
@@ -95,7 +96,7 @@ class BodyWriter {
     for (Position at; ok_ && steps > 0; steps -= blocks.back().steps) {
       blocks.push_back({at, std::min(steps, block_faces), last_});
       StepText text(at_once ? &buffer : nullptr, last_);
-      at = write_block<ShellNumbers>(text, blocks.back());
+      at = write_block<ShellNumbers>(text, blocks.back(), directions_);
       last_ = text.last();
       if (at_once) put(buffer);
       buffer.clear();
@@ -104,7 +105,7 @@ class BodyWriter {
       const WrittenBlocks done =
           write_in_order(blocks.size(), options_.jobs, sink_, [&](std::size_t block, ByteBuffer& out) {
             StepText text(&out, blocks[block].last);
-            write_block<const ShellNumbers>(text, blocks[block]);
+            write_block<const ShellNumbers>(text, blocks[block], std::as_const(directions_));
           });
       ok_ = ok_ && done.complete;
       bytes_ += done.bytes;
@@ -113,11 +114,10 @@ class BodyWriter {
     in_group_ = 0;
   }
 
-  /// Returns where the next block begins. Only what is said with numbers that are not yet known is kept. Directions are
-  /// written again in every block, so that blocks do not depend on each other.
+  /// Returns where the next block begins. Only what is said with numbers that are not yet known is kept.
   template <typename Numbers>
-  Position write_block(StepText& text, const Block& block) {
-    StepGeometry geometry(text);
+  Position write_block(StepText& text, const Block& block, auto& directions) {
+    StepGeometry geometry(text, directions);
     Position at = block.from;
     std::optional<ShellWriter> writer;
     for (std::size_t step = 0; step < block.steps; ++step) {
@@ -162,6 +162,7 @@ class BodyWriter {
   std::size_t in_group_ = 0;         ///< faces
   std::map<const Solid*, SolidNumbers> solids_;
   std::vector<StepId> items_;
+  Directions directions_;
   StepId last_ = 0;
   std::uint64_t bytes_ = 0;
   bool ok_ = true;

@@ -319,10 +319,23 @@ class Division {
   std::map<const Template*, Copy> copies_;  ///< by what the body has
 };
 
+constexpr std::size_t most_looked_at = 50'000;
+
+/// Triangles of the templates, each once.
+std::size_t mesh_size(Body& body) {
+  std::set<const Template*> templates;
+  visit_shells(body, [&](const Shell& shell) { templates.insert(shell.geometry.get()); });
+  std::size_t triangles = 0;
+  for (const Template* geometry : templates)
+    for (const FaceTemplate& face : geometry->faces) triangles += face.mesh.triangles.size();
+  return triangles;
+}
+
 }  // namespace
 
 std::size_t clear_triangles(Body& body, const RunOptions& run) {
   constexpr int most_rounds = 3;
+  if (mesh_size(body) > most_looked_at) return 0;
   const Body given = body;
   Originals left_alone;
   for (int round = 0; round < most_rounds && !run.should_stop(); ++round) {

@@ -8,8 +8,10 @@
 // balls) triangles of one can pass through those of the other although the surfaces keep apart. Segments of such
 // triangles are halved at the surface, or at the edge, in all faces that have them, until no two triangles meet as an
 // STL file rounds them. Of a lattice one instance of each face is looked at, and all faces around it. Faces on
-// B-splines keep their triangles; surfaces that touch, touch. Cost: about 2 us a triangle that is looked at. Thread
-// rule: changes `body` alone; templates that other bodies share are copied first.
+// B-splines keep their triangles; surfaces that touch, touch; a body whose templates have more than 50 000 triangles
+// stays as it is: what is meshed so finely seldom meets itself, and looking would take longer than meshing. Cost:
+// about 2 us a triangle that is looked at. Thread rule: changes `body` alone; templates that other bodies share are
+// copied first.
 
 #include "meso/base/run_options.hpp"
 #include "meso/brep/body.hpp"

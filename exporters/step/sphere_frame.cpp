@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sphere_frame.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <set>
+#include <tuple>
+
+#include "meso/brep/placement.hpp"
+
+namespace meso::step {
+
+using namespace brep;
+
+namespace {
+
+constexpr double pi = std::numbers::pi;
+constexpr int samples_of_an_edge = 12, azimuths = 24, spread_axes = 40;
+constexpr double clear_enough = 0.02;  // radians
+
+Vec3 unit(Vec3 v) { return (1 / norm(v)) * v; }
+
+using Loop = std::vector<Vec3>;  ///< unit vectors from the sphere's centre, in order
+
+/// A circle's arc, or the poles of another curve, which are near enough to keep clear of it.
+std::vector<Vec3> points_along(const EdgeTemplate& edge, Vec3 first, Vec3 last) {
+  const auto* circle = std::get_if<Circle>(&edge.curve);
+  if (const auto* spline = std::get_if<BSplineCurve>(&edge.curve)) return spline->poles;
+  if (circle == nullptr) return {first, last};
+  const AxisFrame& f = circle->frame;
+  const Vec3 y = cross(f.z, f.x);
+  const auto angle = [&](Vec3 p) { return std::atan2(dot(p - f.origin, y), dot(p - f.origin, f.x)); };
+  const double from = angle(first);
+  double sweep = angle(last) - from;
+  while (sweep < 1e-9) sweep += 2 * pi;
+  std::vector<Vec3> points;
+  for (int i = 0; i <= samples_of_an_edge; ++i) {
+    const double a = from + sweep * i / samples_of_an_edge;
+    points.push_back(f.origin + circle->radius * (std::cos(a) * f.x + std::sin(a) * y));
+  }
+  return points;
+}
+
+std::vector<Loop> loops_of(const FaceTemplate& face, const Template& geometry, Vec3 centre) {
+  std::vector<Loop> loops;
+  for (const auto& coedges : face.loops) {
+    Loop& loop = loops.emplace_back();
+    for (const Coedge& use : coedges) {
+      const EdgeTemplate& edge = geometry.edges[use.edge];
+      if (edge.degenerate) continue;
+      const auto vertex = [&](std::size_t k) {
+        return geometry.vertices[edge.vertex[k]] + cell_origin(geometry, edge.vertex_offset[k]);
+      };
+      std::vector<Vec3> points = points_along(edge, vertex(0), vertex(1));
+      if (use.reversed) std::reverse(points.begin(), points.end());
+      const Vec3 shift = cell_origin(geometry, use.offset) - centre;
+      for (const Vec3& p : points) loop.push_back(unit(p + shift));
+    }
+  }
+  return loops;
+}
+
+bool has_seam(const FaceTemplate& face) {
+  std::set<std::tuple<std::uint32_t, Index3>> seen;
+  for (const auto& loop : face.loops)
+    for (const Coedge& use : loop)
+      if (!seen.insert({use.edge, use.offset}).second) return true;
+  return false;
+}
+
+struct Clearance {
+  int crossings = 0;  ///< of the seam, without those of loops around a pole
+  double margin = 2;  ///< sine of the angle between poles or seam and the nearest loop
+  friend bool operator<(const Clearance& a, const Clearance& b) {
+    return a.crossings != b.crossings ? a.crossings > b.crossings : a.margin < b.margin;
+  }
+};
+
+Clearance clearance_of(const AxisFrame& frame, const std::vector<Loop>& loops) {
+  const Vec3 y = cross(frame.z, frame.x);
+  Clearance found;
+  for (const Loop& loop : loops) {
+    int crossings = 0;
+    double beside = 2;
+    for (std::size_t i = 0; i < loop.size(); ++i) {
+      const Vec3 p = loop[i], q = loop[(i + 1) % loop.size()];
+      const double pu = dot(p, frame.x), pw = dot(p, y), qu = dot(q, frame.x), qw = dot(q, y);
+      found.margin = std::min(found.margin, std::hypot(pu, pw));
+      if (pu > 0) beside = std::min(beside, std::fabs(pw));
+      if ((pw < 0) != (qw < 0) && pu * std::fabs(qw) + qu * std::fabs(pw) > 0) ++crossings;
+    }
+    if (crossings == 0) found.margin = std::min(found.margin, beside);
+    if (crossings > 1) found.crossings += crossings;
+  }
+  return found;
+}
+
+/// Through the middles of holes, and spread over the sphere.
+std::vector<Vec3> axes_to_try(const AxisFrame& own, const std::vector<Loop>& loops) {
+  std::vector<Vec3> axes{own.z, own.x, cross(own.z, own.x)};
+  for (const Loop& loop : loops) {
+    Vec3 middle;
+    for (const Vec3& p : loop) middle += p;
+    if (norm(middle) > 1e-3) axes.push_back(unit(middle));
+  }
+  for (int i = 0; i < spread_axes; ++i) {
+    const double h = (i + 0.5) / spread_axes, around = pi * (1 + std::sqrt(5.0)) * i, r = std::sqrt(1 - h * h);
+    axes.push_back({r * std::cos(around), r * std::sin(around), h});
+  }
+  return axes;
+}
+
+}  // namespace
+
+AxisFrame clear_frame(const SphereSurface& sphere, const FaceTemplate& face, const Template& geometry) {
+  const AxisFrame& own = sphere.frame;
+  if (has_seam(face)) return own;
+  const std::vector<Loop> loops = loops_of(face, geometry, own.origin);
+  AxisFrame best = own;
+  Clearance clearest = clearance_of(own, loops);
+  if (clearest.crossings == 0 && clearest.margin > clear_enough) return own;
+  for (const Vec3 z : axes_to_try(own, loops)) {
+    const Vec3 beside = std::fabs(z.x) < 0.6 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
+    const Vec3 x = unit(beside - dot(beside, z) * z), y = cross(z, x);
+    for (int a = 0; a < azimuths; ++a) {
+      const double angle = 2 * pi * a / azimuths;
+      const AxisFrame frame{own.origin, z, std::cos(angle) * x + std::sin(angle) * y};
+      const Clearance clearance = clearance_of(frame, loops);
+      if (clearest < clearance) std::tie(best, clearest) = std::tie(frame, clearance);
+    }
+  }
+  return best;
+}
+
+}  // namespace meso::step
