@@ -293,7 +293,8 @@ class ExitCodes(CommandTest):
     @needs("convert")
     def test_step_files_are_audited(self):
         out = self.out("a.step")
-        self.expect(0, "convert", BEAM, out, "--set", "pitch=10mm")
+        plate = BEAM.parent.parent / "documents" / "drilled_plate.meso"
+        self.expect(0, "convert", plate, out)
         own = json.loads(self.expect(0, "verify", out, "--json").stdout)
         self.assertEqual((own["closed"], own["solids"], own["notes"]), (True, 1, []))
         self.assertEqual(len(own["shellVolumes"]), 1)
@@ -435,7 +436,7 @@ class Packages(CommandTest):
         package = self.packed_beam()
         for verb, flags, output in [("validate", ["--json"], None), ("info", [], None), ("eval", [], "cells.csv"),
                                     ("convert", ["--set", "pitch=10mm"], "beam.step"),
-                                    ("convert", ["--engine", "implicit", "--samples", "20"], "beam.ply"),
+                                    ("convert", ["--engine", "implicit", "--samples", "60^3"], "beam.ply"),
                                     ("render", ["--set", "pitch=10mm", "--width", "64", "--height", "48"], "beam.png")]:
             if verb in VERBS:
                 with self.subTest(verb=verb):
@@ -527,7 +528,7 @@ class CommandLanguage(CommandTest):
         (self.folder / "full.ply").symlink_to("/dev/full")
         for code, says, words in ((2, "SDF_STACK_LEFT", ""), (2, "SDF_STACK_LEFT", "ball ball"), (2, "SDF_STACK_UNDERFLOW", "union"),
                                   (2, "^~~", "ball bxo"), (2, "SDF_VALUE", "ball scale 0"), (2, "SDF_INCLUDE", "@loop.txt"),
-                                  (2, ".vtu .msh .inp", "ball -o a.step"), (6, "10000000000 nodes", "ball -s 1e30"), (2, "USAGE", "ball --jobs many"), (2, "USAGE", "ball --double -o a.stl"),
+                                  (2, ".vtu .msh .inp", "ball -o a.step"), (6, "1e+10 nodes", "ball -s 1e30"), (2, "USAGE", "ball --jobs many"), (2, "USAGE", "ball --double -o a.stl"),
                                   (2, "SDF_UNKNOWN_WORD", "ball --max-cells 3"), (3, "FILE_NOT_FOUND", "@none.txt"), (3, "FILE_NOT_FOUND", "file none.ply"),
                                   (3, "MESH_FILE", "file empty.off"), (7, "WRITE_FAILED", "ball -o none/a.ply"), (7, "WRITE_FAILED", "ball -s 200^3 -o full.ply"),
                                   (6, "LIMIT", "tpms.gyroid -s 30000,30000,30000 --max-memory 256M -o a.ply"), (6, "LIMIT_TIME", "tpms.gyroid -s 3000,3000,3000 --timeout 0.2 -o a.ply")):
