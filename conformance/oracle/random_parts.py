@@ -182,7 +182,10 @@ class Judge:
             return "refused", (re.search(r"(?:error|warning) ([A-Z_]+)", done.stderr) or [None, first])[1]
         failed = []
         if done.stdout.strip():
-            failed = [f'{c["what"]}: {c["found"]} instead of {c["expected"]}' for c in json.loads(done.stdout).get("checks", []) if not c["passed"]]
+            faults = [c for c in json.loads(done.stdout).get("checks", []) if not c["passed"]]
+            failed = [f'{c["what"]}: {c["found"]} instead of {c["expected"]}' for c in faults if not c["what"].startswith(NOT_JUDGED)]
+            if faults and not failed:
+                return "told", ", ".join(c["what"] for c in faults)
         if done.returncode in (1, 2, 3) and not failed:
             return "invalid", first
         # Parts that touch in a line are told, and are what the definitions say.
@@ -273,7 +276,10 @@ def one(judge, kind, seed, parent):
     return kind, seed, verdict, words, small
 
 
-VERDICTS = ("ok", "touching", "empty", "refused", "skipped", "invalid", "wrong")
+# Checks that may fail although the part is what its definition says: distances from faces on B-splines are searched for and the search can end at
+# another place, and OpenCASCADE's reader does not give back every body as it was written. They are counted as told.
+NOT_JUDGED = ("STEP read back", "edges from faces", "vertices from edges", "triangles from faces", "volume of triangles")
+VERDICTS = ("ok", "told", "touching", "empty", "refused", "skipped", "invalid", "wrong")
 
 
 def print_summary(total, reasons):

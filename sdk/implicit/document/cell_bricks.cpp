@@ -46,9 +46,9 @@ struct Shared {
   std::array<std::int32_t, 3> counts{};
   double margin = 0, radius = 0;
   double exact_within = 0;  ///< of rows: no more than is asked beside a surface, which is kept in memory
-  double far = 0;         ///< what stands where nothing is near
-  bool is_exact = false;  ///< values count everywhere, deep inside too
-  Vec3 half;              ///< of a brick's box in the field's space
+  double far = 0;           ///< what stands where nothing is near
+  bool is_exact = false;    ///< values count everywhere, deep inside too
+  Vec3 half;                ///< of a brick's box in the field's space
   Vec3 inverse_spacing;
   std::vector<double> xs;  ///< of nodes, to full bricks
 };
