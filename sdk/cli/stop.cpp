@@ -12,6 +12,9 @@
 #include <chrono>
 #include <climits>
 #include <csignal>
+#include <cstdlib>
+#include <exception>
+#include <new>
 #include <string_view>
 #include <thread>
 
@@ -126,6 +129,16 @@ void wait_for_signals(sigset_t set) {
 }  // namespace
 
 void watch_stop_signals() {
+  // Memory may end in a thread of a library, where nobody catches it.
+  std::set_terminate([] {
+    try {
+      if (const std::exception_ptr thrown = std::current_exception()) std::rethrow_exception(thrown);
+    } catch (const std::bad_alloc&) {
+      end_now(Code::limit_memory);
+    } catch (...) {
+    }
+    std::abort();
+  });
   const sigset_t set = stop_signals();
   pthread_sigmask(SIG_BLOCK, &set, nullptr);
   std::signal(SIGXFSZ, SIG_IGN);  // a file beyond `ulimit -f`: the write fails, and is told as such
