@@ -131,17 +131,17 @@ class Triangles {
     enum : char { unknown, outside, inside };
     std::vector<char> place(triangles_.size(), unknown);
     const Index start = incident_[points_.size() - 4];
-    std::vector<Index> todo{start};
+    std::vector<Index> pending{start};
     place[start] = outside;
     std::vector<std::array<Index, 3>> out;
-    while (!todo.empty()) {
-      const Index t = todo.back();
-      todo.pop_back();
+    while (!pending.empty()) {
+      const Index t = pending.back();
+      pending.pop_back();
       for (std::size_t k = 0; k < 3; ++k) {
         const Index u = triangles_[t].next[k];
         if (u == nothing || place[u] != unknown) continue;
         place[u] = (place[t] == inside) != triangles_[t].borders[k] ? inside : outside;
-        todo.push_back(u);
+        pending.push_back(u);
       }
     }
     for (std::size_t t = 0; t < triangles_.size(); ++t)
@@ -248,35 +248,35 @@ class Triangles {
   }
 
   void restore_circles(Index p) {
-    std::vector<Index> todo;
+    std::vector<Index> pending;
     Index t = incident_[p];
     const Index first = t;
     do {  // all around p
-      todo.push_back(t);
+      pending.push_back(t);
       t = triangles_[t].next[after(index_of(triangles_[t].corner, p))];
     } while (t != first);
-    while (!todo.empty()) {
-      t = todo.back();
-      todo.pop_back();
+    while (!pending.empty()) {
+      t = pending.back();
+      pending.pop_back();
       const std::size_t k = index_of(triangles_[t].corner, p);
       if (is_delaunay(t, k)) continue;
       const Index u = triangles_[t].next[k];
       flip(t, k);
-      todo.push_back(t);
-      todo.push_back(u);
+      pending.push_back(t);
+      pending.push_back(u);
     }
   }
 
   void restore_circles(const std::vector<Side>& sides) {
-    std::deque<Side> todo(sides.begin(), sides.end());
-    while (!todo.empty()) {
-      const Side side = todo.front();
-      todo.pop_front();
+    std::deque<Side> pending(sides.begin(), sides.end());
+    while (!pending.empty()) {
+      const Side side = pending.front();
+      pending.pop_front();
       const auto [t, k] = where(side);
       if (t == nothing || is_delaunay(t, k)) continue;
       const Index u = triangles_[t].next[k], p = triangles_[t].corner[k], q = opposite(u, t);
       flip(t, k);
-      for (const Index end : {side.a, side.b}) todo.insert(todo.end(), {{p, end}, {q, end}});
+      for (const Index end : {side.a, side.b}) pending.insert(pending.end(), {{p, end}, {q, end}});
     }
   }
 
