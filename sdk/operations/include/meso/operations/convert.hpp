@@ -24,6 +24,7 @@
 #include "meso/brep/measure.hpp"
 #include "meso/brep/realise.hpp"
 #include "meso/eval/evaluation.hpp"
+#include "meso/operations/mesh_accuracy.hpp"
 #include "meso/operations/mesh_measures.hpp"
 
 namespace meso::operations {
@@ -40,8 +41,11 @@ struct MakeOptions {
   Engine engine = Engine::automatic;
   // Of the implicit engine. Absent: the document's samples, else a fifth of the smallest feature.
   std::optional<double> spacing_mm{};
-  std::vector<double> samples{};  ///< one number for all, or three; instead of a spacing
-  bool measure = false;           ///< volume, area and pieces of the mesh: about half as much work again
+  std::vector<double> samples{};         ///< one number for all, or three; instead of a spacing
+  bool measure = false;                  ///< volume, area and pieces of the mesh: about half as much work again
+  bool sharp = false;                    ///< edges and corners of the solid are edges and corners of the mesh
+  std::optional<double> tolerance_mm{};  ///< largest distance of the mesh from the surface; picks the grid
+  std::optional<double> simplify_mm{};   ///< as few triangles as stay so close to the surface
   RunOptions run{};
 };
 
@@ -97,6 +101,7 @@ struct ConvertReport {
   std::array<std::int32_t, 3> grid_nodes{};
   double spacing_mm = 0;
   std::optional<MeshMeasures> mesh;
+  std::optional<MeshAccuracy> accuracy;  ///< of a tolerance or a simplified mesh
   Seconds seconds;
 };
 [[nodiscard]] std::optional<ConvertReport> convert(const std::filesystem::path& in, const std::filesystem::path& out,

@@ -17,6 +17,7 @@
 #include "meso/base/output_file.hpp"
 #include "meso/base/run_options.hpp"
 #include "meso/implicit/grid.hpp"
+#include "meso/operations/mesh_accuracy.hpp"
 #include "meso/operations/mesh_measures.hpp"
 #include "meso/sdf/program.hpp"
 
@@ -29,6 +30,9 @@ struct SdfOptions {
   bool strict_math = false;         ///< formulas as written, none regrouped
   bool polish = false;              ///< vertices on the surface itself, not on the samples' interpolant
   bool no_slivers = false;          ///< very narrow triangles collapsed
+  bool sharp = false;               ///< edges and corners of the solid are edges and corners of the mesh
+  double tolerance = 0;             ///< if positive: the mesh is at most so far from the surface; picks the grid
+  double simplify = 0;              ///< if positive: as few triangles as stay so close to the surface
   bool double_coordinates = false;  ///< not of .stl, which has floats only
   bool ascii = false;               ///< of .stl
   ExistingFile existing = ExistingFile::replace;
@@ -48,6 +52,7 @@ struct SdfReport {
     double volume = 0, area = 0;
   };
   std::optional<Limit> extrapolated;
+  std::optional<MeshAccuracy> accuracy;  ///< of `tolerance` and `simplify`
   struct {
     double read = 0, contour = 0, extrapolate = 0, total = 0;
   } seconds;  ///< wall-clock; contouring includes writing
