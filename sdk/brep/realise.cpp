@@ -111,6 +111,11 @@ class PartFold {
 
  private:
   bool step(Folded& state, const Part& part, const Apply& apply, bool is_last) {
+    if (apply.radius || apply.skin) {
+      context_.report(Code::brep_not_realised, apply.id_in_source,
+                      {apply.radius ? "fillets of a radius between operands" : "skins of a thickness"});
+      return false;
+    }
     FoldContext context{context_, apply, 0, options_.max_boolean_solids};
     if (apply.clearance) {
       const auto clearance = evaluation_.value(*apply.clearance, apply.id_in_source, "clearance", context_.sink);

@@ -2,6 +2,7 @@
 #include "meso/eval/evaluation.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 #include "body.hpp"
@@ -107,6 +108,25 @@ std::optional<double> Evaluation::value(const Expression& expression, ElementId 
 
 const Pattern* Evaluation::find_pattern(std::string_view id) const { return find_by_id(document().patterns, id); }
 const Part* Evaluation::find_part(std::string_view id) const { return find_by_id(document().parts, id); }
+
+PointQuantity Evaluation::quantity(std::string_view name, ElementId where, DiagnosticSink& sink) const {
+  const std::string_view id = name.substr(0, name.find('.'));
+  const VectorField* field = find_by_id(document().vector_fields, id);
+  assert(field != nullptr);  // validation knows the names
+  const auto all = field_quantities(*field);
+  const auto wanted = std::find_if(all.begin(), all.end(),
+                                   [&](const FieldQuantity& q) { return q.name == name.substr(id.size() + 1); });
+  assert(wanted != all.end());
+  const auto source = impl_->fields->find(*impl_, *field, true, impl_->report(sink));
+  if (!source) return {};
+  return [impl = impl_, source, slot = QuantitySlot{*wanted, 0}, where](Vec3 p_mm,
+                                                                        DiagnosticSink& told) -> std::optional<double> {
+    double value = 0;
+    const bool known =
+        source->at_point(p_mm / impl->millimeters(), {&slot, 1}, {&value, 1}, {where, "value"}, impl->report(told));
+    return known ? std::optional(value) : std::nullopt;
+  };
+}
 
 std::optional<CellStream> Evaluation::cells(const Pattern& pattern, DiagnosticSink& sink) const {
   auto impl = make_cell_stream(impl_, pattern, sink);

@@ -97,8 +97,14 @@ class GeneratorCompiler {
     if (!bind(loop, "spacing", loop.spacing, program.spacing) ||
         !bind(loop, "position", loop.position, program.position))
       return false;
-    program.cumulative = program.spacing && program.spacing->names(loop.index.text);
-    program.stepped = program.spacing || program.position;
+    if (loop.size && program.axis) {
+      Scope along = scope_;
+      along.define(loop.axis->text, static_cast<std::uint32_t>(program_.axis_slot + *program.axis), level());
+      program.size = along.bind(loop.size->text, {loop.id_in_source, "size"}, unit(), report_);
+      if (!program.size) return false;
+    }
+    program.cumulative = program.size || (program.spacing && program.spacing->names(loop.index.text));
+    program.stepped = program.spacing || program.position || program.size;
     if (program.direction) direction_level_ = level();
     program_.loops.push_back(std::move(program));
     return true;

@@ -48,9 +48,9 @@ struct LoopProgram {
   std::uint32_t index_slot = 0;
   std::optional<std::size_t> axis;
   std::optional<std::array<BoundExpression, 3>> direction;
-  std::optional<BoundExpression> count, start, spacing, position;
+  std::optional<BoundExpression> count, start, spacing, position, size;
   bool cumulative = false;                  ///< R-6.3.5: the spacing names the loop's own index
-  bool stepped = false;                     ///< has spacing or position: a step to be conformal with
+  bool stepped = false;                     ///< has spacing, position or size: a step to be conformal with
   std::int64_t first = 0;                   ///< of a fill range: its lowest n
   LoopState initial;                        ///< what the absent expressions leave unsaid
   std::vector<std::vector<double>> places;  ///< of a list: one row of coordinates per index

@@ -36,6 +36,8 @@ class Walker {
   [[nodiscard]] bool begin_places(std::size_t loop);
   [[nodiscard]] bool begin_direction(std::size_t loop);
   [[nodiscard]] bool move_to(std::size_t loop, std::int64_t index);
+  /// where the cell ends that begins at q.
+  [[nodiscard]] bool end_of_sized(std::size_t loop, double q, double& end);
   [[nodiscard]] bool move_to_record(const LoopProgram& program);
   [[nodiscard]] bool seek(std::uint64_t ordinal);
   [[nodiscard]] bool next();

@@ -69,6 +69,31 @@ bool Walker::begin_count(std::size_t loop) {
   return true;
 }
 
+// dq/du = size(q) over one unit of the phase u: 64 steps of Runge and Kutta's fourth order.
+bool Walker::end_of_sized(std::size_t loop, double q, double& end) {
+  const LoopProgram& program = program_.loops[loop];
+  double& coordinate = slots_[program_.axis_slot + *program.axis];
+  const double before = coordinate;
+  constexpr int steps = 64;
+  constexpr double h = 1.0 / steps;
+  const auto size_at = [&](double at, double& size) {
+    coordinate = at;
+    if (!evaluate(*program.size, size, loop + 1)) return false;
+    if (size > 0) return true;
+    report(loop + 1)(Code::value_not_positive, program.size->place, {"size", format_number(size)});
+    return false;
+  };
+  bool good = true;
+  for (int i = 0; i < steps && good; ++i) {
+    double a = 0, b = 0, c = 0, d = 0;
+    good = size_at(q, a) && size_at(q + 0.5 * h * a, b) && size_at(q + 0.5 * h * b, c) && size_at(q + h * c, d);
+    q += h / 6 * (a + 2 * b + 2 * c + d);
+  }
+  coordinate = before;
+  end = q;
+  return good;
+}
+
 // the coordinate of a loop at an index.
 bool Walker::move_to(std::size_t loop, std::int64_t index) {
   const LoopProgram& program = program_.loops[loop];
@@ -84,6 +109,10 @@ bool Walker::move_to(std::size_t loop, std::int64_t index) {
       double spacing = 0;
       index_value = static_cast<double>(m);
       index_[loop] = m;
+      if (program.size) {
+        if (!end_of_sized(loop, s.q, s.q)) return false;
+        continue;
+      }
       if (!evaluate(*program.spacing, spacing, loop + 1)) return false;
       s.q += spacing;
     }
@@ -207,7 +236,12 @@ bool Walker::fill_steps() {
     const LoopState& s = state_[k];
     if (!program.axis || *program.axis >= 3 || !program.stepped) continue;
     double step = s.spacing;
-    if (program.cumulative && !evaluate(*program.spacing, step, loops())) return false;
+    if (program.size) {
+      if (!end_of_sized(k, s.q, step)) return false;
+      step -= s.q;
+    } else if (program.cumulative && !evaluate(*program.spacing, step, loops())) {
+      return false;
+    }
     if (program.position) {
       double& index = slots_[program.index_slot];
       double ahead = 0;

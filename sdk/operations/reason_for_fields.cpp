@@ -17,7 +17,9 @@ class Search {
     if (!seen_.insert(part.id.text).second) return {};
     for (const Apply& apply : part.steps) {
       std::string reason;
-      if (apply.part)
+      if (apply.radius || apply.skin)
+        reason = "a step of part '" + part.id.text + "' has a " + (apply.radius ? "radius" : "skin");
+      else if (apply.part)
         reason = in(*evaluation_.find_part(apply.part->text));
       else if (const Pattern* pattern = evaluation_.find_pattern(apply.pattern->text))
         reason = in(*pattern);

@@ -75,6 +75,12 @@ void GeneratorCheck::expressions(const Loop& loop) {
   outer_names_.add(loop.index.text, "an index");
   (void)c_.check(loop, "spacing", loop.spacing, outer_names_);
   (void)c_.check(loop, "position", loop.position, outer_names_);
+  if (loop.size) {
+    // Of its coordinate alone: it holds between the cells' corners, too.
+    Scope names(&c_.parameters);
+    if (loop.axis) names.add(loop.axis->text, "an axis");
+    if (c_.check(loop, "size", *loop.size, names)) c_.require_positive(loop, "size", loop.size);
+  }
   if (loop.axis) outer_names_.add(loop.axis->text, "an axis");
 }
 
@@ -86,13 +92,23 @@ void GeneratorCheck::operator()(const Loop& loop) {
     c_.report(Code::attribute_ineffective, loop, "axis", {"axis", "beside a direction x y z"});
   if (has_direction && c_.is_zero(loop.x, loop.y, loop.z)) c_.report(Code::direction_zero, loop, "", {});
   if (!loop.axis && !has_direction) {
-    const std::string_view lost = loop.spacing ? "spacing" : loop.position ? "position" : loop.start ? "start" : "";
+    const std::string_view lost = loop.spacing    ? "spacing"
+                                  : loop.position ? "position"
+                                  : loop.size     ? "size"
+                                  : loop.start    ? "start"
+                                                  : "";
     if (!lost.empty())
       c_.report(Code::attribute_ineffective, loop, lost, {std::string(lost), "without axis or direction"});
     return;
   }
-  if (loop.spacing.has_value() == loop.position.has_value())
-    c_.report(Code::choice_needed, loop, "", {"spacing and position", loop.spacing ? "both" : "none"});
+  const int given = (loop.spacing ? 1 : 0) + (loop.position ? 1 : 0) + (loop.size ? 1 : 0);
+  if (given != 1)
+    c_.report(Code::choice_needed, loop, "",
+              {"spacing, position and size", given == 0   ? "none"
+                                             : given == 2 ? "two"
+                                                          : "all"});
+  else if (loop.size && !loop.axis)
+    c_.report(Code::attribute_ineffective, loop, "size", {"size", "along a direction: it is a function of an axis"});
   else if (loop.start && loop.position)
     c_.report(Code::attribute_ineffective, loop, "start", {"start", "beside position"});
   if (!loop.axis) return;

@@ -32,6 +32,20 @@ void check_boundary(Context& c, const Apply& apply) {
     c.report(Code::box_needed, apply, "boundary", {cell->id.text, "the boundary rule tests it; or use test=\"body\""});
 }
 
+///
+void check_surroundings(Context& c, const Apply& apply) {
+  if (c.check(apply, "radius", apply.radius, c.parameters)) c.require_not_negative(apply, "radius", apply.radius);
+  if (c.check(apply, "skin", apply.skin, c.parameters)) c.require_not_negative(apply, "skin", apply.skin);
+  if (apply.skin && apply.operation == ApplyOperation::union_)
+    c.report(Code::attribute_ineffective, apply, "skin", {"skin", "with operation=\"union\""});
+  const BoundaryRule rule = apply.boundary.value_or(BoundaryRule::clip);
+  if (rule == BoundaryRule::clip) return;
+  if (apply.radius)
+    c.report(Code::attribute_ineffective, apply, "radius", {"radius", "with boundary=\"" + text(rule) + "\""});
+  if (apply.skin)
+    c.report(Code::attribute_ineffective, apply, "skin", {"skin", "with boundary=\"" + text(rule) + "\""});
+}
+
 void check_apply(Context& c, const Apply& apply) {
   if (apply.pattern.has_value() == apply.part.has_value())
     c.report(Code::choice_needed, apply, "", {"pattern and part", apply.pattern ? "both" : "none"});
@@ -42,6 +56,7 @@ void check_apply(Context& c, const Apply& apply) {
   if (c.check(apply, "clearance", apply.clearance, c.parameters))
     c.require_not_negative(apply, "clearance", apply.clearance);
   check_boundary(c, apply);
+  check_surroundings(c, apply);
 }
 
 ///

@@ -32,13 +32,52 @@ void check_box(Context& c, const CellBox& box, const Scope& scope) {
   c.require_positive(box, "dz", box.dz);
 }
 
-void check_surface(Context& c, const ImplicitBody& body) {
+template <class Body>
+void check_surface(Context& c, const Body& body) {
   std::string_view name = *body.surface;
   constexpr std::string_view prefix = "tpms.";  // as the command language writes it
   if (name.starts_with(prefix)) name.remove_prefix(prefix.size());
   const auto known = surface_names();
   if (std::ranges::find(known, name) == known.end())
     c.report(Code::implicit_unknown_surface, body, "surface", {*body.surface, c.suggestion(name, known)});
+}
+
+/// of values that are known.
+void require_share(Context& c, const Element& element, std::string_view attribute,
+                   const std::optional<Expression>& share, bool may_be_whole) {
+  const auto value = share ? c.constant(*share) : std::nullopt;
+  if (!value || (*value > 0 && *value < 1) || (may_be_whole && (*value == 0 || *value == 1))) return;
+  c.report(Code::value_outside, element, attribute,
+           {std::string(attribute), may_be_whole ? "from 0 to 1" : "between 0 and 1", format_number(*value)});
+}
+
+/// One of them says what the function is.
+template <class Body>
+void check_function(Context& c, const Body& body) {
+  if (body.field.has_value() == body.surface.has_value())
+    c.report(Code::choice_needed, body, "", {"field and surface", body.field ? "both" : "none"});
+  if (body.surface) check_surface(c, body);
+}
+
+/// what says where the surface runs.
+void check_levels(Context& c, const ImplicitBody& body) {
+  const ImplicitKind kind = body.kind.value_or(ImplicitKind::endoskeleton);
+  const bool is_shell = kind == ImplicitKind::shell;
+  const std::string with_kind =
+      "with kind=\"" + std::string(enum_texts<ImplicitKind>[static_cast<std::size_t>(kind)]) + "\"";
+  if (is_shell) {
+    const int given = (body.thickness ? 1 : 0) + (body.wall ? 1 : 0) + (body.density ? 1 : 0);
+    if (given > 1) c.report(Code::choice_needed, body, "", {"thickness, wall and density", given == 2 ? "two" : "all"});
+  } else if (body.wall) {
+    c.report(Code::attribute_ineffective, body, "wall", {"wall", with_kind});
+  }
+  if (body.density && kind == ImplicitKind::eccentric_shell)
+    c.report(Code::attribute_ineffective, body, "density", {"density", with_kind});
+  else if (body.density && body.isovalue && !is_shell)
+    c.report(Code::attribute_ineffective, body, "isovalue", {"isovalue", "beside density, which says where it is"});
+  c.require_positive(body, "thickness", body.thickness);
+  c.require_positive(body, "wall", body.wall);
+  require_share(c, body, "density", body.density, false);
 }
 
 void check_implicit(Context& c, const UnitCell& cell, const ImplicitBody& body, const Scope& outer) {
@@ -49,10 +88,12 @@ void check_implicit(Context& c, const UnitCell& cell, const ImplicitBody& body, 
     scope.add(name, "a coordinate of the cell");
   }
   walk(body, ExpressionCheck{c, scope});
-  if (body.field.has_value() == body.surface.has_value())
-    c.report(Code::choice_needed, body, "", {"field and surface", body.field ? "both" : "none"});
-  if (body.surface) check_surface(c, body);
-  c.require_positive(body, "thickness", body.thickness);
+  check_function(c, body);
+  for (const ImplicitBlend& blend : body.blends) {
+    check_function(c, blend);
+    require_share(c, blend, "weight", blend.weight, true);
+  }
+  check_levels(c, body);
   if (!cell.box) c.report(Code::box_needed, cell, "", {cell.id.text, "implicit bodies are cut to it"});
 }
 

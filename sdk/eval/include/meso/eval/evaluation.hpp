@@ -66,6 +66,10 @@ struct PlacedCell {
   std::array<double, 3> step{};        ///< conformal: size along axes 1, 2, 3
 };
 
+/// A quantity of a vector field at points of the world, in millimetres; the value is in the document's unit. Nothing
+/// where the field has none, which is told. Safe to share between threads.
+using PointQuantity = std::function<std::optional<double>(Vec3 p_mm, DiagnosticSink& sink)>;
+
 class Evaluation;
 
 /// The cells of one pattern.
@@ -128,6 +132,9 @@ class Evaluation {
 
   [[nodiscard]] const Pattern* find_pattern(std::string_view id) const;
   [[nodiscard]] const Part* find_part(std::string_view id) const;
+  /// `name` as expressions write it: field.quantity. `where` is told of points without a value. Empty after a
+  /// report.
+  [[nodiscard]] PointQuantity quantity(std::string_view name, ElementId where, DiagnosticSink& sink) const;
   [[nodiscard]] std::optional<CellStream> cells(const Pattern& pattern, DiagnosticSink& sink) const;
   /// The macrostructure's body in the world, placement applied.
   [[nodiscard]] std::optional<Shape> shape(const Macrostructure& macrostructure, DiagnosticSink& sink) const;

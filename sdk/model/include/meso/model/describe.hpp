@@ -44,6 +44,7 @@ MESO_ELEMENT(CsgScale, "scale");
 MESO_ELEMENT(CsgBody, "csg");
 MESO_ELEMENT(ImportBody, "import");
 MESO_ELEMENT(BeamsBody, "beams");
+MESO_ELEMENT(ImplicitBlend, "blend");
 MESO_ELEMENT(ImplicitBody, "implicit");
 MESO_ELEMENT(PartBody, "part");
 MESO_ELEMENT(PointsLocation, "points");
@@ -72,6 +73,9 @@ inline constexpr std::array enum_texts<BeamCap> = std::to_array<std::string_view
 template <>
 inline constexpr std::array enum_texts<ImplicitKind> = std::to_array<std::string_view>({"endoskeleton", "exoskeleton",
                                                                                         "shell", "eccentricShell"});
+template <>
+inline constexpr std::array enum_texts<ImplicitMirror> = std::to_array<std::string_view>({"x", "y", "z", "xy", "xz",
+                                                                                          "yz", "xyz"});
 template <>
 inline constexpr std::array enum_texts<ComponentRole> = std::to_array<std::string_view>({"position", "vector", "tensor",
                                                                                          "scalar"});
@@ -260,6 +264,12 @@ void describe(V& v, E& e) {
   v.children("node", e.nodes);
   v.children("beam", e.beams);
 }
+template <class V, Of<ImplicitBlend> E>
+void describe(V& v, E& e) {
+  v.attribute("field", e.field);
+  v.attribute("surface", e.surface);
+  v.attribute("weight", e.weight);
+}
 template <class V, Of<ImplicitBody> E>
 void describe(V& v, E& e) {
   v.attribute("field", e.field);
@@ -269,6 +279,10 @@ void describe(V& v, E& e) {
   v.attribute("lower", e.lower);
   v.attribute("upper", e.upper);
   v.attribute("thickness", e.thickness);
+  v.attribute("density", e.density);
+  v.attribute("wall", e.wall);
+  v.attribute("mirror", e.mirror);
+  v.children("blend", e.blends);
 }
 template <class V, Of<PartBody> E>
 void describe(V& v, E& e) {
@@ -362,6 +376,7 @@ void describe(V& v, E& e) {
   v.attribute("start", e.start);
   v.attribute("spacing", e.spacing);
   v.attribute("position", e.position);
+  v.attribute("size", e.size);
 }
 template <class V, Of<Sort> E>
 void describe(V& v, E& e) {
@@ -520,6 +535,8 @@ void describe(V& v, E& e) {
   v.attribute("test", e.test);
   v.attribute("clearance", e.clearance);
   v.attribute("fragments", e.fragments);
+  v.attribute("radius", e.radius);
+  v.attribute("skin", e.skin);
   v.child("placement", e.placement);
 }
 template <class V, Of<ExpectedValue> E>

@@ -93,6 +93,8 @@ struct Apply : Element {
   std::optional<InsideTest> test;         ///< box
   std::optional<Expression> clearance;    ///< 0
   std::optional<FragmentRule> fragments;  ///< keep
+  std::optional<Expression> radius;       ///< of the fillet where both operands meet, 0
+  std::optional<Expression> skin;         ///< what lies within it of the left operand's boundary stays, 0
   std::optional<Placement> placement;     ///< of a part operand, identity
   friend bool operator==(const Apply&, const Apply&) = default;
 };

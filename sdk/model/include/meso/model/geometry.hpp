@@ -165,13 +165,27 @@ struct BeamsBody : Element {
   friend bool operator==(const BeamsBody&, const BeamsBody&) = default;
 };
 
+/// The function so far becomes (1 - weight) of it and weight of this one: an expression of x y z or a surface by name.
+struct ImplicitBlend : Element {
+  std::optional<Expression> field;
+  std::optional<std::string> surface;
+  Expression weight;  ///< from 0 to 1
+  friend bool operator==(const ImplicitBlend&, const ImplicitBlend&) = default;
+};
+
 enum class ImplicitKind { endoskeleton, exoskeleton, shell, eccentric_shell };
+/// The cell's axes along which its second half is the mirror image of its first.
+enum class ImplicitMirror { x, y, z, xy, xz, yz, xyz };
 /// An expression of x y z (negative inside) or a surface by name; always cut to the cell's box.
 struct ImplicitBody : Element {
   std::optional<Expression> field;
   std::optional<std::string> surface;
   std::optional<ImplicitKind> kind;  ///< endoskeleton
   std::optional<Expression> isovalue, lower, upper, thickness;
+  std::optional<Expression> density;  ///< share of the box that the body fills; in place of a level
+  std::optional<Expression> wall;     ///< of a shell, a length; in place of thickness, which is a difference of levels
+  std::optional<ImplicitMirror> mirror;
+  std::vector<ImplicitBlend> blends;
   friend bool operator==(const ImplicitBody&, const ImplicitBody&) = default;
 };
 

@@ -13,14 +13,16 @@ struct UnitCell;
 // Generators.
 
 /// Index 0 ... count-1. Either `spacing` (q_i = start + sum of spacing(m), m < i) or `position` (q_i = position(i)),
-/// along an axis of the system or along a direction; with neither axis nor direction the loop only counts.
+/// along an axis of the system or along a direction; with neither axis nor direction the loop only counts. Along an
+/// axis `size` in their place: a function of the coordinate, cell i begins where the integral of 1 / size from start is
+/// i.
 struct Loop : Element {
   Name index;
   Expression count;
   std::optional<Name> axis;
   std::optional<Expression> x, y, z;  ///< direction, normalised
   std::optional<Expression> start;    ///< 0
-  std::optional<Expression> spacing, position;
+  std::optional<Expression> spacing, position, size;
   friend bool operator==(const Loop&, const Loop&) = default;
 };
 
