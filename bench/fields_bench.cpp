@@ -44,7 +44,7 @@ BENCHMARK(decode)->ArgName("lines")->Arg(0)->Arg(76);
 
 // Records and questions in random order: neighbours in one list are none in space.
 void nearest(benchmark::State& state) {
-  const PointSearch search(random_points(static_cast<std::size_t>(state.range(0)), 2));
+  const PointSearch search = *PointSearch::make(random_points(static_cast<std::size_t>(state.range(0)), 2), {});
   const std::vector<Vec3> questions = random_points(std::size_t{1} << 16, 3);
   std::size_t i = 0;
   for (auto _ : state) {
@@ -57,7 +57,7 @@ BENCHMARK(nearest)->ArgName("records")->Arg(100'000)->Arg(10'000'000);
 
 void thinning(benchmark::State& state) {
   const std::vector<Vec3> points = random_points(static_cast<std::size_t>(state.range(0)), 4);
-  for (auto _ : state) benchmark::DoNotOptimize(thin(points, 0.01));
+  for (auto _ : state) benchmark::DoNotOptimize(thin(points, 0.01, {}));
   state.SetItemsProcessed(static_cast<std::int64_t>(state.iterations() * points.size()));
 }
 BENCHMARK(thinning)->ArgName("records")->Arg(1'000'000);
@@ -88,7 +88,7 @@ void mapped_records(benchmark::State& state) {
   for (auto _ : state) {
     std::string error;
     const auto records = Records::map(ResourceBytes::open(file, error), {.rows = rows, .columns = 4});
-    benchmark::DoNotOptimize(statistics(*records));
+    benchmark::DoNotOptimize(statistics(*records, {}));
     most = std::max(most, own_mebibytes());
   }
   state.counters["own_MiB"] = most - before;

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "meso/import_field_csv/read_csv.hpp"
 
+#include <algorithm>
 #include <charconv>
+
+#include "meso/fields/number_block.hpp"
 
 namespace meso {
 namespace {
@@ -39,9 +42,9 @@ class CsvReader {
 
   std::optional<fields::Table> read() {
     fields::Table table;
-    std::vector<double> values;
+    std::optional<fields::NumberBlock> values;
     std::string_view line;
-    std::size_t columns = 0, line_of_first_record = 0;
+    std::size_t columns = 0, rows = 0, line_of_first_record = 0;
     while (next_line(line)) {
       if (columns == 0) {
         find_separator(line);
@@ -51,28 +54,32 @@ class CsvReader {
           continue;
         }
       }
-      if (!goes_on(values.capacity() * sizeof(double))) return std::nullopt;
+      if (!goes_on()) return std::nullopt;
+      if (!values) {
+        if (columns == 0) columns = cells_of(line);
+        line_of_first_record = line_;
+        values = room_for(columns);
+        if (!values) return std::nullopt;
+      }
+      double* const row = values->data() + rows * columns;
       std::size_t found = 0;
       for (std::size_t at = 0; at <= line.size(); ++found) {
         const std::size_t begin = at;
         const std::string_view cell = next_cell(line, at);
         const auto value = number(cell);
-        if (!value || (columns > 0 && found == columns)) {
-          fault(line, begin, columns > 0 && found == columns ? "the end of the line" : "a number", cell);
+        if (!value || found == columns) {
+          fault(line, begin, found == columns ? "the end of the line" : "a number", cell);
           return std::nullopt;
         }
-        values.push_back(*value);
-      }
-      if (columns == 0) {
-        columns = found;
-        line_of_first_record = line_;
+        row[found] = *value;
       }
       if (found < columns) {
         fault(line, line.size(), std::to_string(columns) + " cells", std::to_string(found));
         return std::nullopt;
       }
+      ++rows;
     }
-    if (values.empty()) {
+    if (rows == 0) {
       sink_.report({.code = Code::field_file_empty, .where = {.file = file_}, .args = {"records"}});
       return std::nullopt;
     }
@@ -81,17 +88,24 @@ class CsvReader {
       sink_.report({.code = Code::field_no_heading,
                     .where = {.file = file_, .length = 1, .line = line_of_first_record, .column = 1},
                     .args = {std::to_string(columns)}});
-    table.records = fields::Records::of(std::move(values), columns);
+    table.records = std::move(*values).records(rows, columns);
     return table;
   }
 
  private:
-  bool goes_on(std::uint64_t bytes) {
+  /// For what the rest of the file can hold at most: its lines, or a number in every letter.
+  std::optional<fields::NumberBlock> room_for(std::size_t columns) {
+    const std::string_view left = text_.substr(std::min(at_, text_.size()));
+    const auto lines = static_cast<std::size_t>(std::count(left.begin(), left.end(), '\n')) + 2;
+    return fields::NumberBlock::make(std::min(columns * lines, text_.size()), run_, sink_);
+  }
+  std::size_t cells_of(std::string_view line) const {
+    std::size_t cells = 0;
+    for (std::size_t at = 0; at <= line.size(); ++cells) (void)next_cell(line, at);
+    return cells;
+  }
+  bool goes_on() {
     constexpr std::size_t poll_mask = 0x3FFF;
-    if (bytes > run_.max_memory_bytes) {
-      sink_.report({.code = Code::limit_memory, .args = {std::to_string(run_.max_memory_bytes >> 20) + " MiB"}});
-      return false;
-    }
     if ((line_ & poll_mask) != 0 || !run_.should_stop()) return true;
     sink_.report({.code = run_.out_of_time() ? Code::limit_time : Code::cancelled});
     return false;

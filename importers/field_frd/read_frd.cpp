@@ -7,9 +7,11 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <span>
 #include <unordered_map>
 
 #include "meso/fields/file_cursor.hpp"
+#include "meso/fields/split_cells.hpp"
 
 namespace meso {
 namespace {
@@ -132,15 +134,22 @@ class FrdReader {
   }
 
   bool add_element(std::int64_t type, const std::vector<std::int64_t>& ids) {
-    const bool is_tetra = type == 3 || type == 6, is_hexa = type == 1 || type == 4;
-    if (!is_tetra && !is_hexa) return true;
-    for (std::size_t i = 0; i < (is_tetra ? 4U : 8U); ++i) {
+    const bool is_tetra = type == 3 || type == 6, is_hexa = type == 1 || type == 4, is_wedge = type == 2 || type == 5;
+    if (!is_tetra && !is_hexa && !is_wedge) return true;
+    std::array<std::int64_t, 8> corner{};
+    const std::size_t corners = is_tetra ? 4 : is_hexa ? 8 : 6;
+    for (std::size_t i = 0; i < corners; ++i) {
       const auto row = row_of_.find(ids[i]);
       if (row == row_of_.end()) return in_.expected("elements of known nodes");
-      if (!in_.takes(sizeof(std::int64_t))) return false;
-      (is_tetra ? tetra_ : hexa_).push_back(static_cast<std::int64_t>(row->second));
+      corner[i] = static_cast<std::int64_t>(row->second);
     }
-    return true;
+    auto& list = is_hexa ? hexa_ : tetra_;
+    const std::size_t before = list.size();
+    if (is_wedge)
+      append_tetrahedra(fields::CellKind::wedge, std::span(corner).first(corners), list);
+    else
+      list.insert(list.end(), corner.begin(), corner.begin() + static_cast<std::ptrdiff_t>(corners));
+    return in_.takes((list.size() - before) * sizeof(std::int64_t));
   }
   bool elements(std::string_view line) {
     std::int64_t count = 0;

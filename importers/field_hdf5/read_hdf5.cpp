@@ -12,6 +12,7 @@
 #include <csignal>
 #include <utility>
 
+#include "meso/fields/number_block.hpp"
 #include "meso/hdf5/handle.hpp"
 
 namespace meso {
@@ -21,6 +22,7 @@ using hdf5::Handle;
 
 constexpr hsize_t block_values = hsize_t{1} << 22;  // 32 MiB between two looks at the clock
 constexpr hsize_t most_columns = 10'000;
+constexpr hsize_t most_unpacked = 2000;  // bytes of doubles out of a packed one: deflate makes up to 1032 of bytes
 constexpr std::size_t most_text_bytes = std::size_t{1} << 16;  // of an attribute
 
 struct DataSet {
@@ -197,14 +199,14 @@ class Hdf5Reader {
       result.records = std::move(*mapped);
       return result;
     }
-    std::vector<double> values;
-    if (!allocate(values, sets_[0].rows, columns)) return std::nullopt;
+    auto values = room_for(sets_[0].rows, columns);
+    if (!values) return std::nullopt;
     hsize_t first = 0;
     for (const DataSet& set : sets_) {
-      if (!read(set, H5T_NATIVE_DOUBLE, values.data(), first, columns)) return std::nullopt;
+      if (!read(set, H5T_NATIVE_DOUBLE, values->data(), first, columns)) return std::nullopt;
       first += set.columns;
     }
-    result.records = fields::Records::of(std::move(values), columns);
+    result.records = std::move(*values).records(sets_[0].rows, columns);
     return result;
   }
 
@@ -227,15 +229,28 @@ class Hdf5Reader {
     sink_.report({.code = code, .where = {.file = has_place ? name_ : ""}, .args = std::move(args)});
   }
 
-  template <class T>
-  bool allocate(std::vector<T>& values, hsize_t rows, hsize_t columns) {
+  void report_memory() {
+    sink_.report({.code = Code::limit_memory, .args = {std::to_string(run_.max_memory_bytes >> 20) + " MiB"}});
+  }
+  bool allocate(std::vector<std::int64_t>& values, hsize_t rows, hsize_t columns) {
     hsize_t count = 0;  // extents are what the file states, whatever it holds
-    if (__builtin_mul_overflow(rows, columns, &count) || count > run_.max_memory_bytes / sizeof(T)) {
-      sink_.report({.code = Code::limit_memory, .args = {std::to_string(run_.max_memory_bytes >> 20) + " MiB"}});
+    if (__builtin_mul_overflow(rows, columns, &count) || count > run_.max_memory_bytes / sizeof(std::int64_t)) {
+      report_memory();
       return false;
     }
     values.resize(count);
     return true;
+  }
+  /// Many numbers go to a file, unless they cannot have come out of what the data sets hold.
+  std::optional<fields::NumberBlock> room_for(hsize_t rows, hsize_t columns) {
+    hsize_t count = 0, held = 0;
+    for (const DataSet& set : sets_) held += H5Dget_storage_size(set.set.id());
+    if (__builtin_mul_overflow(rows, columns, &count) || count >> 60 != 0 ||
+        (!fields::NumberBlock::is_in_memory(count, run_) && count * sizeof(double) / most_unpacked > held)) {
+      report_memory();
+      return std::nullopt;
+    }
+    return fields::NumberBlock::make(count, run_, sink_);
   }
 
   bool open_all(const std::string& paths) {

@@ -6,9 +6,11 @@
 #include <cstring>
 #include <limits>
 #include <map>
+#include <span>
 #include <unordered_map>
 
 #include "meso/fields/file_cursor.hpp"
+#include "meso/fields/split_cells.hpp"
 
 namespace meso {
 namespace {
@@ -26,6 +28,11 @@ std::size_t nodes_of(std::int64_t type) {
 }
 bool is_tetra(std::int64_t type) { return type == 4 || type == 11; }
 bool is_hexa(std::int64_t type) { return type == 5 || type == 12 || type == 17; }
+/// Of a pyramid and a wedge; 0 of others.
+std::size_t corners_to_split(std::int64_t type) {
+  if (type == 7 || type == 14 || type == 19) return 5;
+  return type == 6 || type == 13 || type == 18 ? 6 : 0;
+}
 
 constexpr std::uint64_t bytes_per_node = 128;  // its place twice, its number in the table of numbers
 
@@ -54,6 +61,8 @@ class MshReader {
       } else if (section == "$NodeData") {
         in_.line();
         good = node_data();
+      } else if (section == "$ElementData" || section == "$ElementNodeData") {
+        has_element_data_ = true;
       }
       if (!good) return std::nullopt;
       // Sections that are not ours, ends of sections and line ends are walked over word by word.
@@ -141,23 +150,26 @@ class MshReader {
     return true;
   }
 
-  bool add_corner(std::int64_t type, std::size_t position, std::int64_t tag) {
-    const bool tetra = is_tetra(type);
-    if (!tetra && !is_hexa(type)) return true;
-    if (position >= (tetra ? 4U : 8U)) return true;
-    const auto row = row_of_.find(tag);
-    if (row == row_of_.end()) return in_.expected("elements of known nodes");
-    (tetra ? tetra_ : hexa_).push_back(static_cast<std::int64_t>(row->second));
-    return in_.takes(sizeof(std::int64_t));
-  }
   bool corners(std::int64_t type) {
-    const std::size_t nodes = nodes_of(type);
+    const std::size_t nodes = nodes_of(type), corners = is_tetra(type) ? 4 : is_hexa(type) ? 8 : corners_to_split(type);
     if (nodes == 0) return in_.unsupported("an element of type " + std::to_string(type));
+    std::array<std::int64_t, 8> corner{};
     for (std::size_t i = 0; i < nodes; ++i) {
       std::int64_t tag = 0;
-      if (!size(tag) || !add_corner(type, i, tag)) return false;
+      if (!size(tag)) return false;
+      if (i >= corners) continue;
+      const auto row = row_of_.find(tag);
+      if (row == row_of_.end()) return in_.expected("elements of known nodes");
+      corner[i] = static_cast<std::int64_t>(row->second);
     }
-    return true;
+    auto& list = is_hexa(type) ? hexa_ : tetra_;
+    const std::size_t before = list.size();
+    if (corners_to_split(type) > 0)
+      append_tetrahedra(corners == 5 ? fields::CellKind::pyramid : fields::CellKind::wedge,
+                        std::span(corner).first(corners), list);
+    else
+      list.insert(list.end(), corner.begin(), corner.begin() + static_cast<std::ptrdiff_t>(corners));
+    return list.size() == before || in_.takes((list.size() - before) * sizeof(std::int64_t));
   }
   bool elements_2() {
     std::int64_t count = 0;
@@ -266,13 +278,14 @@ class MshReader {
       }
     }
     result.records = fields::Records::of(std::move(values), result.columns.size());
+    if (has_element_data_) in_.left_out("values of elements");
     result.tetra = std::move(tetra_);
     result.hexa = std::move(hexa_);
     return result;
   }
 
   fields::FileCursor in_;
-  bool is_version_2_ = false, is_binary_ = false;
+  bool is_version_2_ = false, is_binary_ = false, has_element_data_ = false;
   std::vector<double> places_;
   std::unordered_map<std::int64_t, std::size_t> row_of_;  ///< looked up only
   std::vector<std::int64_t> tetra_, hexa_;

@@ -110,7 +110,7 @@ class VtkReader {
     while (true) {
       const std::string word = lower(in_.word());
       if (word.empty() || word == "point_data" || word == "cell_data") {
-        is_points_ = word == "point_data";
+        section_ = word;
         break;
       }
       bool good = true;
@@ -202,20 +202,31 @@ class VtkReader {
   }
 
   bool attributes() {
-    if (!is_points_) return content_.types.empty() || cells_fit();
-    std::int64_t count = 0;
-    if (!in_.count(count, most)) return false;
-    if (count * 3 != static_cast<std::int64_t>(content_.places.size())) return in_.expected("data for every point");
-    while (true) {
-      const std::string word = lower(in_.word());
-      if (word.empty() || word == "cell_data") break;
-      if (word == "metadata") {
-        skip_metadata();
-        continue;
-      }
-      if (!attribute(word, count)) return false;
+    // Values of cells are walked over where those of points may follow.
+    while (!section_.empty()) {
+      const bool is_points = section_ == "point_data";
+      content_.has_cell_values = content_.has_cell_values || !is_points;
+      if (!is_points && !content_.arrays.empty()) break;
+      if (!section(is_points)) return false;
     }
     return content_.types.empty() || cells_fit();
+  }
+  /// Up to the next one.
+  bool section(bool is_points) {
+    std::int64_t count = 0;
+    if (!in_.count(count, most)) return false;
+    if (is_points && count * 3 != static_cast<std::int64_t>(content_.places.size()))
+      return in_.expected("data for every point");
+    while (true) {
+      section_ = lower(in_.word());
+      if (section_.empty() || section_ == "point_data" || section_ == "cell_data") break;
+      if (section_ == "metadata")
+        skip_metadata();
+      else if (!attribute(section_, count))
+        return false;
+    }
+    if (!is_points) content_.arrays.clear();
+    return true;
   }
   bool cells_fit() {
     return content_.offsets.size() == content_.types.size() + 1 || in_.expected("a type for every cell");
@@ -266,8 +277,8 @@ class VtkReader {
 
   fields::FileCursor in_;
   std::size_t size_;
-  bool is_binary_ = false, is_points_ = false;
-  std::string kind_;
+  bool is_binary_ = false;
+  std::string kind_, section_;
   vtk::Content content_;
 };
 

@@ -119,7 +119,9 @@ class VtuReader {
       group_ = name;
     } else if (is_in_array_) {
       ++inner_;  // an InformationKey: its text is no data
-    } else if (name == "DataArray" && !group_.empty() && group_ != "CellData") {
+    } else if (name == "DataArray" && group_ == "CellData") {
+      content_.has_cell_values = true;
+    } else if (name == "DataArray" && !group_.empty()) {
       DataArray array{group_, all["Name"], all["type"], all["format"], 1, 0, {}};
       std::int64_t number = 0;
       if (fields::parse_field_integer(all["NumberOfComponents"], number) && number > 0)

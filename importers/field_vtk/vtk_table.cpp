@@ -3,11 +3,47 @@
 
 #include <algorithm>
 #include <functional>
+#include <span>
+
+#include "meso/fields/split_cells.hpp"
 
 namespace meso::vtk {
 namespace {
 
-constexpr std::int64_t tetra = 10, hexa = 12, quadratic_tetra = 24, quadratic_hexa = 25, triquadratic_hexa = 29;
+/// VTK's numbers of cells, of first and of higher order, by what their corners make.
+enum class Shape { flat, tetra, voxel, cell, other };
+struct KnownCell {
+  std::int64_t type;
+  Shape shape;
+  fields::CellKind kind = fields::CellKind::hexahedron;
+};
+constexpr std::int64_t last_flat = 9;  // vertices, lines, triangles, polygons, quadrilaterals
+constexpr KnownCell known_cells[] = {
+    {10, Shape::tetra},
+    {24, Shape::tetra},
+    {11, Shape::voxel},
+    {12, Shape::cell},
+    {25, Shape::cell},
+    {29, Shape::cell},
+    {33, Shape::cell},
+    {13, Shape::cell, fields::CellKind::wedge},
+    {26, Shape::cell, fields::CellKind::wedge},
+    {31, Shape::cell, fields::CellKind::wedge},
+    {32, Shape::cell, fields::CellKind::wedge},
+    {14, Shape::cell, fields::CellKind::pyramid},
+    {27, Shape::cell, fields::CellKind::pyramid},
+    {37, Shape::cell, fields::CellKind::pyramid},
+};
+constexpr std::int64_t flat_of_higher_order[] = {21, 22, 23, 28, 30, 34, 35, 36};
+
+KnownCell known_cell(std::int64_t type) {
+  for (const KnownCell& known : known_cells) {
+    if (known.type == type) return known;
+  }
+  const bool is_flat = type <= last_flat || std::find(std::begin(flat_of_higher_order), std::end(flat_of_higher_order),
+                                                      type) != std::end(flat_of_higher_order);
+  return {type, is_flat ? Shape::flat : Shape::other};
+}
 
 std::string suffix(std::size_t width, std::size_t i) {
   static constexpr const char* six[] = {"_xx", "_yy", "_zz", "_xy", "_yz", "_xz"};
@@ -19,23 +55,43 @@ std::string suffix(std::size_t width, std::size_t i) {
   return "_" + std::to_string(i + 1);
 }
 
+void report_left_out(bool has_cell_values, std::size_t cells, fields::FileCursor& in) {
+  std::string what = has_cell_values ? "values of cells" : "";
+  if (cells > 0)
+    what += (what.empty() ? "" : ", and ") + std::to_string(cells) +
+            (cells == 1 ? " cell of another kind" : " cells of other kinds");
+  if (!what.empty()) in.left_out(std::move(what));
+}
+
 bool add_cells(const Content& content, fields::Table& table, fields::FileCursor& in) {
   const auto points = static_cast<std::int64_t>(content.places.size() / 3);
+  std::size_t others = 0;
   for (std::size_t c = 0; c < content.types.size(); ++c) {
-    const std::int64_t type = content.types[c];
-    const bool is_tetra = type == tetra || type == quadratic_tetra;
-    if (!is_tetra && type != hexa && type != quadratic_hexa && type != triquadratic_hexa) continue;
-    const std::size_t corners = is_tetra ? 4 : 8;
+    const KnownCell cell = known_cell(content.types[c]);
+    if (cell.shape == Shape::other) ++others;
+    if (cell.shape == Shape::flat || cell.shape == Shape::other) continue;
+    const std::size_t corners = cell.shape == Shape::tetra ? 4 : corners_of(cell.kind);
     const std::int64_t first = content.offsets[c], end = content.offsets[c + 1];
     if (first < 0 || end > static_cast<std::int64_t>(content.connectivity.size()) || end < first ||
         end - first < static_cast<std::int64_t>(corners))
       return in.expected("cells with enough points");
+    std::array<std::int64_t, 8> point{};
     for (std::size_t i = 0; i < corners; ++i) {
-      const std::int64_t point = content.connectivity[static_cast<std::size_t>(first) + i];
-      if (point < 0 || point >= points) return in.expected("cells of points that exist");
-      (is_tetra ? table.tetra : table.hexa).push_back(point);
+      point[i] = content.connectivity[static_cast<std::size_t>(first) + i];
+      if (point[i] < 0 || point[i] >= points) return in.expected("cells of points that exist");
+    }
+    if (cell.shape == Shape::voxel) {  // its corners run along x, y and z
+      std::swap(point[2], point[3]);
+      std::swap(point[6], point[7]);
+    }
+    if (cell.kind != fields::CellKind::hexahedron) {
+      append_tetrahedra(cell.kind, std::span(point).first(corners), table.tetra);
+    } else {
+      auto& list = corners == 4 ? table.tetra : table.hexa;
+      list.insert(list.end(), point.begin(), point.begin() + static_cast<std::ptrdiff_t>(corners));
     }
   }
+  report_left_out(content.has_cell_values, others, in);
   return true;
 }
 

@@ -36,6 +36,7 @@ struct Content {
   bool is_regular = false;
   std::vector<std::int64_t> offsets, connectivity, types;  ///< cell i: connectivity[offsets[i], offsets[i + 1])
   std::vector<Array> arrays;
+  bool has_cell_values = false;  ///< which are left out
 };
 
 /// Nothing if something does not fit; reported through `in`.

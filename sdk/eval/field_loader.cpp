@@ -9,6 +9,7 @@
 #include "field_source.hpp"
 #include "meso/base/number.hpp"
 #include "meso/fields/base64.hpp"
+#include "meso/fields/number_block.hpp"
 #include "meso/fields/statistics.hpp"
 #include "meso/import_field_file/read_field_file.hpp"
 #include "meso/resource/resource.hpp"
@@ -71,6 +72,15 @@ class FieldLoader {
   bool fault(Code code, const Place& place, std::vector<std::string> args) const {
     report_(code, place, std::move(args));
     return false;
+  }
+
+  bool stopped() const {
+    report_.sink.report({.code = data_.run.out_of_time() ? Code::limit_time : Code::cancelled});
+    return false;
+  }
+  bool is_stopped(std::size_t done) const {
+    constexpr std::size_t poll_mask = 0xFFFF;
+    return (done & poll_mask) == 0 && data_.run.should_stop();
   }
 
   std::shared_ptr<FieldSource> wall() {
@@ -240,9 +250,10 @@ class FieldLoader {
   }
 
   bool is_finite() const {
-    const std::vector<fields::ColumnStatistics> all = fields::statistics(source_->records_);
+    const auto all = fields::statistics(source_->records_, data_.run);
+    if (!all) return stopped();
     for (std::size_t c = 0; c < components().size(); ++c) {
-      const fields::ColumnStatistics& s = all[source_->columns_[c].column];
+      const fields::ColumnStatistics& s = (*all)[source_->columns_[c].column];
       if (s.nan + s.infinite > 0)
         return fault(Code::field_not_finite, values_place(),
                      {field_.id.text, components()[c].name.text, std::to_string(s.nan + s.infinite),
@@ -351,12 +362,16 @@ bool FieldLoader::prepare(FieldSource& source) {
   std::vector<Vec3> points;
   const bool needs_points = !source.grid_ || field_.interpolation->method != InterpolationMethod::linear;
   if (needs_points) {
-    const std::uint64_t needed = source.records() * bytes_per_place;
-    if (needed > data_.run.max_memory_bytes)
+    // What the numbers themselves may take is left (number_block.hpp).
+    const std::uint64_t needed = source.records() * bytes_per_place, budget = data_.run.max_memory_bytes;
+    if (needed > budget - budget / fields::numbers_part)
       return fault(Code::limit_memory, {field_.id_in_source, {}},
                    {std::to_string(data_.run.max_memory_bytes >> 20) + " MiB"});
     points.reserve(source.records());
-    for (std::size_t r = 0; r < source.records(); ++r) points.push_back(source.place(r));
+    for (std::size_t r = 0; r < source.records(); ++r) {
+      if (is_stopped(r)) return stopped();
+      points.push_back(source.place(r));
+    }
   }
   const auto* mesh = std::get_if<MeshLocation>(&structure().location);
   if (mesh != nullptr && field_.interpolation->method == InterpolationMethod::linear) {
@@ -374,10 +389,12 @@ bool FieldLoader::prepare(FieldSource& source) {
     if (wrong != numbers->end())
       return fault(Code::field_elements, place,
                    {field_.id.text, "names record " + std::to_string(*wrong) + " of " + std::to_string(records)});
-    source.mesh_.emplace(std::make_shared<const std::vector<Vec3>>(points), corners, std::move(*numbers));
+    source.mesh_ = fields::MeshInterpolation::make(std::make_shared<const std::vector<Vec3>>(points), corners,
+                                                   std::move(*numbers), data_.run);
+    if (!source.mesh_) return stopped();
   }
-  if (needs_points) source.search_.emplace(std::move(points));
-  return true;
+  if (needs_points) source.search_ = fields::PointSearch::make(std::move(points), data_.run);
+  return !needs_points || source.search_ || stopped();
 }
 
 std::shared_ptr<FieldSource> FieldSource::load(const EvaluationData& data, const VectorField& field,

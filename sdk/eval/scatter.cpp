@@ -2,6 +2,7 @@
 // which records a scatter visits, and in which order.
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "field_names.hpp"
 #include "generator.hpp"
@@ -29,11 +30,28 @@ class ScatterCompiler {
   }
 
  private:
-  bool stop_is_asked(std::size_t done) const {
+  [[nodiscard]] const RunOptions& run() const { return program_.evaluation->run; }
+  bool stopped() const {
+    report_.sink.report({.code = run().out_of_time() ? Code::limit_time : Code::cancelled});
+    return false;
+  }
+  bool is_stopped(std::size_t done) const {
     constexpr std::size_t poll_mask = 0xFFFF;
-    const RunOptions& run = program_.evaluation->run;
-    if ((done & poll_mask) != 0 || !run.should_stop()) return false;
-    report_.sink.report({.code = run.out_of_time() ? Code::limit_time : Code::cancelled});
+    return (done & poll_mask) == 0 && run().should_stop();
+  }
+
+  /// A stable sort by merging sorted parts, with a look at the clock between two of them.
+  template <class Before>
+  bool sort(std::span<std::uint64_t> order, const Before& before) {
+    constexpr std::size_t part = 1 << 18;
+    if (order.size() <= part) {
+      std::stable_sort(order.begin(), order.end(), before);
+      return true;
+    }
+    if (run().should_stop()) return false;
+    const std::size_t half = order.size() / 2;
+    if (!sort(order.first(half), before) || !sort(order.subspan(half), before)) return false;
+    std::inplace_merge(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(half), order.end(), before);
     return true;
   }
 
@@ -45,7 +63,7 @@ class ScatterCompiler {
     std::vector<double> keys(records.source->records());
     std::vector<double> slots = program_.slots;
     for (std::size_t r = 0; r < keys.size(); ++r) {
-      if (stop_is_asked(r)) return false;
+      if (is_stopped(r)) return stopped();
       Report at_record = report_;
       at_record.related.push_back({report_.source.span(scatter_.id_in_source), "in record " + std::to_string(r)});
       if (!records.source->at_record(r, records.quantities, slots, place, at_record)) return false;
@@ -55,10 +73,10 @@ class ScatterCompiler {
     }
     fill_order(records);
     const bool descends = scatter_.sort->order == SortOrder::descending;
-    std::stable_sort(records.order.begin(), records.order.end(), [&](std::uint64_t a, std::uint64_t b) {
+    const bool sorted = sort(std::span(records.order), [&](std::uint64_t a, std::uint64_t b) {
       return descends ? keys[a] > keys[b] : keys[a] < keys[b];
     });
-    return true;
+    return sorted || stopped();
   }
 
   bool thin(ScatterRecords& records) {
@@ -74,13 +92,14 @@ class ScatterCompiler {
     std::vector<Vec3> points;
     points.reserve(records.order.size());
     for (const std::uint64_t r : records.order) {
-      if (stop_is_asked(points.size())) return false;
+      if (is_stopped(points.size())) return stopped();
       points.push_back(records.source->place(static_cast<std::size_t>(r)));
     }
-    const std::vector<std::size_t> kept = fields::thin(points, *distance);
+    const auto kept = fields::thin(points, *distance, run());
+    if (!kept) return stopped();
     std::vector<std::uint64_t> order;
-    order.reserve(kept.size());
-    for (const std::size_t position : kept) order.push_back(records.order[position]);
+    order.reserve(kept->size());
+    for (const std::size_t position : *kept) order.push_back(records.order[position]);
     records.order = std::move(order);
     return true;
   }

@@ -3,11 +3,13 @@
 
 #include <fstream>
 #include <random>
+#include <set>
 
 #include "meso/fields/base64.hpp"
 #include "meso/fields/grid_interpolation.hpp"
 #include "meso/fields/mesh_interpolation.hpp"
 #include "meso/fields/point_search.hpp"
+#include "meso/fields/split_cells.hpp"
 #include "meso/fields/statistics.hpp"
 #include "meso/fields/symmetric_tensor.hpp"
 #include "meso/fields/table.hpp"
@@ -113,7 +115,7 @@ std::vector<Vec3> random_points(std::size_t count, unsigned seed) {
 
 TEST(PointSearch, FindsWhatAnExhaustiveSearchFinds) {
   const std::vector<Vec3> points = random_points(3000, 3);
-  const PointSearch search(points);
+  const PointSearch search = *PointSearch::make(points, {});
   for (const Vec3& p : random_points(500, 4)) {
     std::size_t best = 0;
     for (std::size_t i = 1; i < points.size(); ++i) {
@@ -129,7 +131,7 @@ TEST(PointSearch, TakesTheLowerNumberOfEquallyNearOnes) {
   for (int i = 0; i < 8; ++i)
     for (int j = 0; j < 8; ++j)
       for (int k = 0; k < 8; ++k) points.push_back({7.0 - i, 7.0 - j, 7.0 - k});
-  const PointSearch search(points);
+  const PointSearch search = *PointSearch::make(points, {});
   for (int i = 0; i < 7; ++i) {
     // The middle of a cube of eight: the lowest number is that of the corner with the largest coordinates.
     const std::int64_t n = (6 - i) * 64 + (6 - i) * 8 + (6 - i);
@@ -137,8 +139,24 @@ TEST(PointSearch, TakesTheLowerNumberOfEquallyNearOnes) {
   }
 }
 
+// Asked in time, however many points there are: 300 000 take more than one look.
+TEST(Long, WorkStopsWhenItIsAsked) {
+  const std::vector<Vec3> points = random_points(300'000, 9);
+  int looks = 0;
+  const RunOptions third{.cancelled = [&] { return ++looks == 3; }};
+  EXPECT_FALSE(PointSearch::make(points, third));
+  looks = 0;
+  EXPECT_FALSE(thin(points, 0.01, third));
+  looks = 0;
+  EXPECT_FALSE(statistics(Records::of(std::vector<double>(300'000), 1), third));
+  std::vector<std::int64_t> cells;
+  for (std::int64_t i = 0; i < 300'000; ++i) cells.push_back(i);
+  looks = 0;
+  EXPECT_FALSE(MeshInterpolation::make(std::make_shared<const std::vector<Vec3>>(points), 4, cells, third));
+}
+
 TEST(InverseDistance, IsExactAtRecordsAndShepardBetween) {
-  const PointSearch search({{0, 0, 0}, {3, 0, 0}});
+  const PointSearch search = *PointSearch::make({{0, 0, 0}, {3, 0, 0}}, {});
   const Records values = Records::of({10, 40}, 1);
   EXPECT_EQ(search.inverse_distance({3, 0, 0}, 2)(values, 0), 40);
   // Weights 1/1 and 1/4.
@@ -158,10 +176,10 @@ TEST(Thin, KeepsWhatTheRuleKeeps) {
       });
       if (is_free) rule.push_back(i);
     }
-    EXPECT_EQ(thin(points, distance), rule) << distance;
+    EXPECT_EQ(*thin(points, distance, {}), rule) << distance;
   }
-  EXPECT_EQ(thin(std::vector<Vec3>(3), 0).size(), 1U);
-  EXPECT_THAT(thin(std::vector<Vec3>{{0, 0, 0}, {1, 0, 0}, {2.5, 0, 0}}, 1), ElementsAre(0, 2));
+  EXPECT_EQ(thin(std::vector<Vec3>(3), 0, {})->size(), 1U);
+  EXPECT_THAT(*thin(std::vector<Vec3>{{0, 0, 0}, {1, 0, 0}, {2.5, 0, 0}}, 1, {}), ElementsAre(0, 2));
 }
 
 // A product of linear functions is what trilinear interpolation reproduces.
@@ -215,7 +233,7 @@ TEST(MeshInterpolation, ReproducesLinearFunctionsOnTetrahedra) {
   std::vector<double> values;
   for (const Vec3& p : *points) values.push_back(f(p));
   const Records records = Records::of(values, 1);
-  const MeshInterpolation mesh(points, 4, cells);
+  const MeshInterpolation mesh = *MeshInterpolation::make(points, 4, cells, {});
   for (const Vec3& p : random_points(500, 6)) {
     const auto stencil = mesh.at(p);
     ASSERT_TRUE(stencil);
@@ -232,7 +250,7 @@ TEST(MeshInterpolation, ReproducesTrilinearFunctionsOnHexahedra) {
   std::vector<double> values;
   for (const Vec3& p : *points) values.push_back(f(p));
   const Records records = Records::of(values, 1);
-  const MeshInterpolation mesh(points, 8, {0, 1, 2, 3, 4, 5, 6, 7});
+  const MeshInterpolation mesh = *MeshInterpolation::make(points, 8, {0, 1, 2, 3, 4, 5, 6, 7}, {});
   int inside = 0;
   for (const Vec3& p : random_points(300, 8)) {
     const auto stencil = mesh.at({2 * p.x, p.y, p.z});
@@ -244,9 +262,79 @@ TEST(MeshInterpolation, ReproducesTrilinearFunctionsOnHexahedra) {
   for (std::size_t i = 0; i < 8; ++i) EXPECT_EQ((*mesh.at((*points)[i]))(records, 0), values[i]);
 }
 
+double volume_of(const std::vector<Vec3>& points, const std::vector<std::int64_t>& tetra) {
+  double sum = 0;
+  for (std::size_t i = 0; i < tetra.size(); i += 4) {
+    const auto at = [&](std::size_t c) { return points[static_cast<std::size_t>(tetra[i + c])]; };
+    sum += std::abs(dot(at(1) - at(0), cross(at(2) - at(0), at(3) - at(0)))) / 6;
+  }
+  return sum;
+}
+
+// Whatever corner has the lowest number: all of the volume, and no tetrahedron without any.
+TEST(SplitCells, FillTheirCell) {
+  const std::vector<Vec3> cube{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}};
+  const std::vector<Vec3> wedge{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {0, 1, 1}};
+  const std::vector<Vec3> pyramid{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0.3, 0.4, 1}};
+  const auto check = [](CellKind kind, const std::vector<Vec3>& places, std::size_t least, double volume) {
+    std::vector<std::int64_t> numbers(places.size());
+    std::mt19937 random(12);
+    for (int n = 0; n < 50; ++n) {
+      for (std::size_t i = 0; i < numbers.size(); ++i) numbers[i] = static_cast<std::int64_t>(i);
+      std::shuffle(numbers.begin(), numbers.end(), random);
+      std::vector<Vec3> points(places.size());
+      for (std::size_t i = 0; i < places.size(); ++i) points[static_cast<std::size_t>(numbers[i])] = places[i];
+      std::vector<std::int64_t> tetra;
+      append_tetrahedra(kind, numbers, tetra);
+      EXPECT_GE(tetra.size(), 4 * least);
+      EXPECT_NEAR(volume_of(points, tetra), volume, 1e-15);
+      for (std::size_t i = 0; i < tetra.size(); i += 4)
+        EXPECT_GT(volume_of(points, {tetra.begin() + static_cast<std::ptrdiff_t>(i),
+                                     tetra.begin() + static_cast<std::ptrdiff_t>(i + 4)}),
+                  0.05);
+    }
+  };
+  check(CellKind::hexahedron, cube, 6, 1);
+  check(CellKind::wedge, wedge, 3, 0.5);
+  check(CellKind::pyramid, pyramid, 2, 1 / 3.0);
+}
+
+// A wedge on a pyramid on a cube, numbered anyhow: sides that two cells share are halved alike, so that a function of
+// the records is continuous there.
+TEST(SplitCells, NeighboursAgreeOnTheirSide) {
+  std::mt19937 random(13);
+  std::vector<std::int64_t> name(9);
+  for (std::size_t i = 0; i < name.size(); ++i) name[i] = static_cast<std::int64_t>(i);
+  for (int n = 0; n < 50; ++n) {
+    std::shuffle(name.begin(), name.end(), random);
+    const auto cell = [&](CellKind kind, const std::vector<std::size_t>& corners) {
+      std::vector<std::int64_t> numbers, tetra;
+      for (const std::size_t c : corners) numbers.push_back(name[c]);
+      append_tetrahedra(kind, numbers, tetra);
+      return tetra;
+    };
+    // Triangles on the side of the corners 4 5 6 7 of the cube.
+    const auto on_side = [&](const std::vector<std::int64_t>& tetra) {
+      std::set<std::set<std::int64_t>> found;
+      const std::set<std::int64_t> side{name[4], name[5], name[6], name[7]};
+      for (std::size_t i = 0; i < tetra.size(); i += 4) {
+        std::set<std::int64_t> triangle;
+        for (std::size_t c = 0; c < 4; ++c)
+          if (side.count(tetra[i + c]) > 0) triangle.insert(tetra[i + c]);
+        if (triangle.size() == 3) found.insert(triangle);
+      }
+      return found;
+    };
+    const auto cube = on_side(cell(CellKind::hexahedron, {0, 1, 2, 3, 4, 5, 6, 7}));
+    EXPECT_EQ(cube.size(), 2U);
+    EXPECT_EQ(cube, on_side(cell(CellKind::pyramid, {4, 5, 6, 7, 8})));
+    EXPECT_EQ(cube, on_side(cell(CellKind::wedge, {4, 5, 8, 7, 6, 3})));
+  }
+}
+
 TEST(Statistics, CountWhatIsNoNumber) {
   const double nan = std::numeric_limits<double>::quiet_NaN(), infinity = std::numeric_limits<double>::infinity();
-  const auto all = statistics(Records::of({1, 2, -3, nan, 7, -infinity}, 2));
+  const auto all = *statistics(Records::of({1, 2, -3, nan, 7, -infinity}, 2), {});
   EXPECT_EQ(all[0].min, -3);
   EXPECT_EQ(all[0].max, 7);
   EXPECT_EQ(all[0].nan + all[0].infinite, 0U);

@@ -134,6 +134,10 @@ bool FileCursor::empty(std::string what) {
   return false;
 }
 
+void FileCursor::left_out(std::string what) {
+  sink_.report({.code = Code::field_left_out, .where = {.file = file_}, .args = {std::move(what)}});
+}
+
 SourceSpan FileCursor::here() const {
   const std::string_view before = bytes_.substr(0, last_);
   const std::size_t line_start = before.rfind('\n') + 1;  // npos + 1 == 0

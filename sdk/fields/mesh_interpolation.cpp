@@ -12,6 +12,7 @@ namespace {
 constexpr double inside_tolerance = 1e-9;  // of the element: no gap between neighbours
 constexpr double corner_tolerance = 1e-12;
 constexpr std::size_t leaf_elements = 4;
+constexpr std::size_t poll_elements = 1 << 15;  // sorting fewer takes a few milliseconds
 constexpr int most_newton_steps = 30;
 
 /// Corners of VTK's hexahedron in the unit cube.
@@ -45,7 +46,10 @@ struct MeshInterpolation::Tree {
     return box;
   }
 
-  void build(const std::vector<Box3>& boxes, std::size_t node, std::uint32_t first, std::uint32_t count) {
+  /// False: asked to stop.
+  bool build(const std::vector<Box3>& boxes, std::size_t node, std::uint32_t first, std::uint32_t count,
+             const RunOptions& run) {
+    if (count >= poll_elements && run.should_stop()) return false;
     Box3 all, centers;
     for (std::uint32_t i = first; i < first + count; ++i) {
       const Box3& b = boxes[order[i]];
@@ -54,7 +58,7 @@ struct MeshInterpolation::Tree {
       centers.extend(b.min + b.max);
     }
     nodes[node] = {all, first, count};
-    if (count <= leaf_elements) return;
+    if (count <= leaf_elements) return true;
     const Vec3 extent = centers.max - centers.min;
     const std::size_t axis = extent.x >= extent.y && extent.x >= extent.z ? 0 : extent.y >= extent.z ? 1 : 2;
     const std::uint32_t half = count / 2;
@@ -67,8 +71,7 @@ struct MeshInterpolation::Tree {
     const std::size_t children = nodes.size();
     nodes[node] = {all, static_cast<std::uint32_t>(children), 0};
     nodes.resize(children + 2);
-    build(boxes, children, first, half);
-    build(boxes, children + 1, first + half, count - half);
+    return build(boxes, children, first, half, run) && build(boxes, children + 1, first + half, count - half, run);
   }
 
   [[nodiscard]] std::optional<std::array<double, 8>> tetra_weights(std::size_t e, Vec3 p) const {
@@ -144,24 +147,28 @@ struct MeshInterpolation::Tree {
   }
 };
 
-MeshInterpolation::MeshInterpolation(std::shared_ptr<const std::vector<Vec3>> points, std::size_t corners,
-                                     std::vector<std::int64_t> connectivity)
-    : tree_(std::make_unique<Tree>()) {
+std::optional<MeshInterpolation> MeshInterpolation::make(std::shared_ptr<const std::vector<Vec3>> points,
+                                                         std::size_t corners, std::vector<std::int64_t> connectivity,
+                                                         const RunOptions& run) {
   assert((corners == 4 || corners == 8) && connectivity.size() % corners == 0);
-  tree_->points = std::move(points);
-  tree_->corners = corners;
-  tree_->connectivity = std::move(connectivity);
-  const std::size_t elements = tree_->connectivity.size() / corners;
+  auto tree = std::make_unique<Tree>();
+  tree->points = std::move(points);
+  tree->corners = corners;
+  tree->connectivity = std::move(connectivity);
+  const std::size_t elements = tree->connectivity.size() / corners;
   std::vector<Box3> boxes(elements);
-  tree_->order.resize(elements);
+  tree->order.resize(elements);
   for (std::size_t e = 0; e < elements; ++e) {
-    boxes[e] = tree_->box_of(e);
-    tree_->order[e] = static_cast<std::uint32_t>(e);
+    boxes[e] = tree->box_of(e);
+    tree->order[e] = static_cast<std::uint32_t>(e);
   }
-  tree_->nodes.resize(1);
-  if (elements > 0) tree_->build(boxes, 0, 0, static_cast<std::uint32_t>(elements));
+  tree->nodes.resize(1);
+  if (elements > 0 && !tree->build(boxes, 0, 0, static_cast<std::uint32_t>(elements), run)) return std::nullopt;
+  return MeshInterpolation(std::move(tree));
 }
+MeshInterpolation::MeshInterpolation(std::unique_ptr<const Tree> tree) : tree_(std::move(tree)) {}
 MeshInterpolation::MeshInterpolation(MeshInterpolation&&) noexcept = default;
+MeshInterpolation& MeshInterpolation::operator=(MeshInterpolation&&) noexcept = default;
 MeshInterpolation::~MeshInterpolation() = default;
 
 std::optional<Stencil> MeshInterpolation::at(Vec3 p) const {

@@ -12,6 +12,7 @@ namespace meso::fields {
 namespace {
 
 constexpr std::size_t leaf_points = 8;
+constexpr std::size_t poll_points = 1 << 15;  // sorting fewer takes a few milliseconds
 /// Lower bounds of squared distances are sums of rounded terms: what is nearer than this is never left out.
 constexpr double bound_slack = 1 + 1e-12;
 
@@ -81,7 +82,8 @@ struct PointSearch::Tree {
   std::size_t first_leaf = 0;
   Box3 box;
 
-  explicit Tree(const std::vector<Vec3>& points) {
+  /// False: asked to stop.
+  bool fill(const std::vector<Vec3>& points, const RunOptions& run) {
     entries.resize(points.size());
     for (std::size_t i = 0; i < points.size(); ++i) {
       box.extend(points[i]);
@@ -91,12 +93,13 @@ struct PointSearch::Tree {
     while (leaves * leaf_points < points.size()) leaves *= 2;
     first_leaf = leaves - 1;
     splits.resize(first_leaf);
-    build(0, 0, entries.size());
+    return build(0, 0, entries.size(), run);
   }
 
   // Halves by count, so that the range of a node follows from its place in the tree.
-  void build(std::size_t node, std::size_t first, std::size_t last) {
-    if (node >= first_leaf) return;
+  bool build(std::size_t node, std::size_t first, std::size_t last, const RunOptions& run) {
+    if (node >= first_leaf) return true;
+    if (last - first >= poll_points && run.should_stop()) return false;
     Box3 bounds;
     for (std::size_t i = first; i < last; ++i) bounds.extend(entries[i].place);
     const Vec3 extent = bounds.max - bounds.min;
@@ -107,8 +110,7 @@ struct PointSearch::Tree {
                      begin + static_cast<std::ptrdiff_t>(last),
                      [axis](const Entry& a, const Entry& b) { return a.place[axis] < b.place[axis]; });
     splits[node] = {entries[middle].place[axis], axis};
-    build(2 * node + 1, first, middle);
-    build(2 * node + 2, middle, last);
+    return build(2 * node + 1, first, middle, run) && build(2 * node + 2, middle, last, run);
   }
 
   /// A part of the tree that is still to be seen: how far p is from its part of space, along each axis and squared.
@@ -156,11 +158,15 @@ struct PointSearch::Tree {
   }
 };
 
-PointSearch::PointSearch(std::vector<Vec3> points) {
+std::optional<PointSearch> PointSearch::make(std::vector<Vec3> points, const RunOptions& run) {
   assert(!points.empty());
-  tree_ = std::make_unique<Tree>(points);
+  auto tree = std::make_unique<Tree>();
+  if (!tree->fill(points, run)) return std::nullopt;
+  return PointSearch(std::move(tree));
 }
+PointSearch::PointSearch(std::unique_ptr<const Tree> tree) : tree_(std::move(tree)) {}
 PointSearch::PointSearch(PointSearch&&) noexcept = default;
+PointSearch& PointSearch::operator=(PointSearch&&) noexcept = default;
 PointSearch::~PointSearch() = default;
 
 const Box3& PointSearch::box() const { return tree_->box; }

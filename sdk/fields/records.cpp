@@ -15,12 +15,17 @@ std::uint64_t stride_of(const RecordLayout& layout) {
 Records Records::of(std::vector<double> values, std::size_t columns) {
   assert(columns > 0 && values.size() % columns == 0);
   const auto owner = std::make_shared<const std::vector<double>>(std::move(values));
+  return within(owner, reinterpret_cast<const std::byte*>(owner->data()), owner->size() / columns, columns);
+}
+
+Records Records::within(std::shared_ptr<const void> owner, const std::byte* first, std::size_t rows,
+                        std::size_t columns) {
   Records result;
-  result.data_ = reinterpret_cast<const std::byte*>(owner->data());
+  result.owner_ = std::move(owner);
+  result.data_ = first;
   result.stride_ = columns * sizeof(double);
-  result.rows_ = owner->size() / columns;
+  result.rows_ = rows;
   result.columns_ = columns;
-  result.owner_ = owner;
   return result;
 }
 

@@ -6,9 +6,11 @@
 
 namespace meso::fields {
 
-std::vector<ColumnStatistics> statistics(const Records& records) {
+std::optional<std::vector<ColumnStatistics>> statistics(const Records& records, const RunOptions& run) {
   std::vector<ColumnStatistics> result(records.columns());
+  constexpr std::size_t poll_mask = 0xFFFF;
   for (std::size_t row = 0; row < records.rows(); ++row) {
+    if ((row & poll_mask) == 0 && run.should_stop()) return std::nullopt;
     for (std::size_t c = 0; c < result.size(); ++c) {
       const double value = records(row, c);
       ColumnStatistics& s = result[c];

@@ -23,7 +23,7 @@ struct CubeHash {
 }  // namespace
 
 // The cubes are only looked up, never walked: their order reaches no result.
-std::vector<std::size_t> thin(std::span<const Vec3> points, double distance) {
+std::optional<std::vector<std::size_t>> thin(std::span<const Vec3> points, double distance, const RunOptions& run) {
   std::vector<std::size_t> kept;
   // A little wider than the distance: neighbours by one are enough also after rounding. Far from the origin cubes are
   // at least as wide as numbers are apart.
@@ -54,7 +54,9 @@ std::vector<std::size_t> thin(std::span<const Vec3> points, double distance) {
     }
     return true;
   };
+  constexpr std::size_t poll_mask = 0x3FFF;
   for (std::size_t i = 0; i < points.size(); ++i) {
+    if ((i & poll_mask) == 0 && run.should_stop()) return std::nullopt;
     const Cube cube = cube_of(points[i]);
     if (!is_free(points[i], cube)) continue;
     cubes[cube].push_back(i);

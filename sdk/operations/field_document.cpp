@@ -7,6 +7,7 @@
 
 #include "meso/base/number.hpp"
 #include "meso/fields/base64.hpp"
+#include "meso/fields/split_cells.hpp"
 
 namespace meso::operations {
 namespace {
@@ -36,23 +37,11 @@ std::vector<std::size_t> family(const fields::Table& table, const std::vector<st
   return {};
 }
 
-/// Elements of one kind, as a field has them: where there are both, a hexahedron becomes six tetrahedra around its
-/// lowest record. A side is halved from its own lowest one, so that neighbours agree (Dompierre et al. 1999).
+/// Elements of one kind, as a field has them: where there are both, a hexahedron becomes six tetrahedra.
 std::vector<std::int64_t> tetrahedra_of(const fields::Table& table) {
-  static constexpr std::size_t sides[6][4] = {{0, 1, 2, 3}, {4, 5, 6, 7}, {0, 1, 5, 4},
-                                              {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}};
   std::vector<std::int64_t> result = table.tetra;
-  for (std::size_t first = 0; first < table.hexa.size(); first += 8) {
-    const auto corners = std::span(table.hexa).subspan(first, 8);
-    const std::int64_t lowest = *std::min_element(corners.begin(), corners.end());
-    for (const auto& side : sides) {
-      std::int64_t around[4];
-      for (std::size_t i = 0; i < 4; ++i) around[i] = corners[side[i]];
-      std::rotate(around, std::min_element(around, around + 4), around + 4);
-      if (around[0] == lowest) continue;
-      result.insert(result.end(), {lowest, around[0], around[1], around[2], lowest, around[0], around[2], around[3]});
-    }
-  }
+  for (std::size_t first = 0; first < table.hexa.size(); first += 8)
+    append_tetrahedra(fields::CellKind::hexahedron, std::span(table.hexa).subspan(first, 8), result);
   return result;
 }
 

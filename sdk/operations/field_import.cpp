@@ -31,17 +31,22 @@ std::optional<fields::Table> read(const fs::path& in, const FieldOptions& option
   return table;
 }
 
-FieldReport describe(const fields::Table& table) {
+/// Nothing: `run` asked to stop.
+std::optional<FieldReport> describe(const fields::Table& table, const RunOptions& run, DiagnosticSink& sink) {
   FieldReport report{.records = table.records.rows(), .tetra = table.tetra.size() / 4, .hexa = table.hexa.size() / 8};
-  const auto all = fields::statistics(table.records);
+  const auto all = fields::statistics(table.records, run);
+  if (!all) {
+    sink.report({.code = run.out_of_time() ? Code::limit_time : Code::cancelled});
+    return std::nullopt;
+  }
   std::size_t places = 0;
   Box3 box{{0, 0, 0}, {0, 0, 0}};
   for (std::size_t c = 0; c < table.columns.size(); ++c) {
-    report.columns.push_back({table.columns[c].name, table.columns[c].unit, all[c]});
+    report.columns.push_back({table.columns[c].name, table.columns[c].unit, (*all)[c]});
     const std::size_t axis = std::string("xyz").find(table.columns[c].name);
     if (table.columns[c].name.size() != 1 || axis > 2) continue;
-    box.min[axis] = all[c].min;
-    box.max[axis] = all[c].max;
+    box.min[axis] = (*all)[c].min;
+    box.max[axis] = (*all)[c].max;
     ++places;
   }
   if (places == 3) report.box = box;
@@ -86,7 +91,7 @@ bool write_hdf5([[maybe_unused]] const fields::Table& table, const fs::path& out
 
 std::optional<FieldReport> field_info(const fs::path& in, const FieldOptions& options, DiagnosticSink& sink) {
   const auto table = read(in, options, sink);
-  return table ? std::optional(describe(*table)) : std::nullopt;
+  return table ? describe(*table, options.run, sink) : std::nullopt;
 }
 
 std::optional<FieldReport> import_field(const fs::path& in, const fs::path& out, const FieldOptions& options,
@@ -99,10 +104,10 @@ std::optional<FieldReport> import_field(const fs::path& in, const fs::path& out,
   }
   const auto table = read(in, options, sink);
   if (!table) return std::nullopt;
-  FieldReport report = describe(*table);
-  if (!is_finite(in, report, sink)) return std::nullopt;
+  auto report = describe(*table, options.run, sink);
+  if (!report || !is_finite(in, *report, sink)) return std::nullopt;
   const bool written = is_meso ? write_meso(*table, out, options, sink) : write_hdf5(*table, out, options, sink);
-  return written ? std::optional(std::move(report)) : std::nullopt;
+  return written ? std::move(report) : std::nullopt;
 }
 
 }  // namespace meso::operations

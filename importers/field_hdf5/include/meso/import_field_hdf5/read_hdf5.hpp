@@ -6,7 +6,8 @@
 //
 // Several paths, separated by commas, stand side by side ("/points,/stress"); all have equally many rows. A path that
 // names a group means all data sets in it, by name. Numbers of any integer or floating-point type become doubles; data
-// sets that lie in the file as doubles in one piece are mapped, others read in blocks of rows. Columns of a data set
+// sets that lie in the file as doubles in one piece are mapped, others read in blocks of rows,
+// into memory or, if they are many, into a temporary file (number_block.hpp). Columns of a data set
 // with an attribute `components` (texts) have these names, others that of the data set (and _1, _2 ...); `unit` or
 // `units` is their unit. Errors: IMPORT_UNREADABLE (no HDF5 file, cut), FIELD_COLUMN where there is no such data set,
 // FIELD_FILE_UNSUPPORTED (texts, three dimensions, links to other files and numbers in them), FIELD_RECORD_COUNT,

@@ -8,9 +8,9 @@
 // One row for each point, in the order of the file; a grid's rows run x fastest, and `grid` says where it stands. An
 // array of one number is a column with its name; of 3 name_x name_y name_z; of 6 name_xx name_yy name_zz name_xy
 // name_yz name_xz; of 9 name_xx name_xy ... name_zz; of others name_1, name_2 ... Corners of tetrahedra and hexahedra
-// of first and second order become `tetra` and `hexa`. Data of cells is left out. Errors: FIELD_FILE_*, LIMIT_MEMORY,
-// LIMIT_TIME, CANCELLED. Linear; no
-// state.
+// of first and second order become `tetra` and `hexa`, pyramids and wedges become tetrahedra. Values of cells and
+// cells of other kinds are left out, with the warning FIELD_LEFT_OUT. Errors: FIELD_FILE_*, LIMIT_MEMORY, LIMIT_TIME,
+// CANCELLED. Linear; no state.
 
 #include <optional>
 #include <string>

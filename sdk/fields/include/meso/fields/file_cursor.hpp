@@ -52,6 +52,8 @@ class FileCursor {
   bool expected(std::string what);
   bool unsupported(std::string what);
   bool empty(std::string what);
+  /// The warning FIELD_LEFT_OUT: the file has this too.
+  void left_out(std::string what);
 
  private:
   void skip_space();

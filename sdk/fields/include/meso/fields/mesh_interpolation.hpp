@@ -2,7 +2,7 @@
 #pragma once
 // Linear interpolation between the corners of tetrahedra or hexahedra.
 //
-//   const auto mesh = MeshInterpolation::make(points, 4, {0, 1, 2, 3});
+//   const auto mesh = MeshInterpolation::make(points, 4, {0, 1, 2, 3}, run);   // nothing: `run` asked to stop
 //   mesh->at({0.1, 0.1, 0.1});   // four records and their barycentric weights; nothing outside of all elements
 //
 // In a tetrahedron barycentric, in a hexahedron trilinear (corners in VTK's order). On a side that elements share the
@@ -13,6 +13,7 @@
 #include <optional>
 #include <vector>
 
+#include "meso/base/run_options.hpp"
 #include "meso/base/vec.hpp"
 #include "meso/fields/stencil.hpp"
 
@@ -21,16 +22,21 @@ namespace meso::fields {
 class MeshInterpolation {
  public:
   /// REQUIRES: `corners` is 4 or 8 and divides the connectivity, whose entries are numbers of points.
-  MeshInterpolation(std::shared_ptr<const std::vector<Vec3>> points, std::size_t corners,
-                    std::vector<std::int64_t> connectivity);
+  [[nodiscard]] static std::optional<MeshInterpolation> make(std::shared_ptr<const std::vector<Vec3>> points,
+                                                             std::size_t corners,
+                                                             std::vector<std::int64_t> connectivity,
+                                                             const RunOptions& run);
   MeshInterpolation(MeshInterpolation&&) noexcept;
+  MeshInterpolation& operator=(MeshInterpolation&&) noexcept;
   ~MeshInterpolation();
 
   [[nodiscard]] std::optional<Stencil> at(Vec3 p) const;
 
  private:
   struct Tree;
-  std::unique_ptr<Tree> tree_;
+  explicit MeshInterpolation(std::unique_ptr<const Tree> tree);
+
+  std::unique_ptr<const Tree> tree_;
 };
 
 }  // namespace meso::fields

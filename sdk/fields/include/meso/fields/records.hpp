@@ -35,6 +35,9 @@ class Records {
   Records() = default;
   /// REQUIRES: columns > 0 divides the number of values.
   [[nodiscard]] static Records of(std::vector<double> values, std::size_t columns);
+  /// Dense rows that `owner` keeps alive.
+  [[nodiscard]] static Records within(std::shared_ptr<const void> owner, const std::byte* first, std::size_t rows,
+                                      std::size_t columns);
   /// Nothing if the file is shorter than the layout. REQUIRES: rows and columns > 0.
   [[nodiscard]] static std::optional<Records> map(std::shared_ptr<const ResourceBytes> file,
                                                   const RecordLayout& layout);

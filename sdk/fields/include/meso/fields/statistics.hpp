@@ -2,13 +2,15 @@
 #pragma once
 // Counts and ranges of columns, in one pass.
 //
-//   const std::vector<ColumnStatistics> all = statistics(records);
-//   all[0].min, all[0].max, all[0].not_finite, all[0].first_not_finite
+//   const auto all = statistics(records, run);   // nothing: `run` asked to stop
+//   (*all)[0].min, (*all)[0].max, (*all)[0].nan, (*all)[0].first_not_finite
 
 #include <cstddef>
 #include <limits>
+#include <optional>
 #include <vector>
 
+#include "meso/base/run_options.hpp"
 #include "meso/fields/records.hpp"
 
 namespace meso::fields {
@@ -20,6 +22,6 @@ struct ColumnStatistics {
   std::size_t first_not_finite = 0;  ///< row, if nan + infinite > 0
 };
 
-[[nodiscard]] std::vector<ColumnStatistics> statistics(const Records& records);
+[[nodiscard]] std::optional<std::vector<ColumnStatistics>> statistics(const Records& records, const RunOptions& run);
 
 }  // namespace meso::fields
