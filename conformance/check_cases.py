@@ -64,13 +64,14 @@ def main():
         faults += [f"{name}: {r} is not in the specification" for r in sorted(rules - specified)]
         if name.parts[0] != case["profile"]:
             faults.append(f"{name}: is in another profile's folder")
-        if not path.with_name(path.name.replace(".expect.json", ".meso")).exists():
+        is_package = case["profile"] == "package"
+        if not path.with_name(path.name.replace(".expect.json", ".mesoz" if is_package else ".meso")).exists():
             faults.append(f"{name}: has no document")
-        if (case.get("verdict") == "invalid") != bool(case.get("errors")):
+        if not is_package and (case.get("verdict") == "invalid") != bool(case.get("errors")):
             faults.append(f"{name}: errors and verdict do not agree")
         cited |= rules
         codes |= {e["code"] for e in errors if "code" in e}
-    for document in sorted((ROOT / "cases").rglob("*.meso")):
+    for document in sorted((ROOT / "cases").rglob("*.meso*")):
         if not document.with_suffix(".expect.json").exists():
             faults.append(f"{document.relative_to(ROOT / 'cases')}: expects nothing")
     chapter = sorted(r for r in specified if r.startswith("R-5."))
