@@ -25,9 +25,13 @@ int finish(Run& run, const operations::FieldReport& report) {
                    {"max", {report.box.max.x, report.box.max.y, report.box.max.z}}};
   }
   json["columns"] = Json::array();
-  if (!run.flags.json)
+  if (!run.flags.json) {
     fmt::print("{} records{}{}\n", report.records, report.tetra > 0 ? fmt::format(", {} tetrahedra", report.tetra) : "",
                report.hexa > 0 ? fmt::format(", {} hexahedra", report.hexa) : "");
+    if (const Box3& box = report.box; !box.empty())
+      fmt::print("box ({:.6g}, {:.6g}, {:.6g}) to ({:.6g}, {:.6g}, {:.6g})\n", box.min.x, box.min.y, box.min.z,
+                 box.max.x, box.max.y, box.max.z);
+  }
   for (const auto& c : report.columns) {
     json["columns"].push_back({{"name", c.name},
                                {"unit", c.unit},
