@@ -75,8 +75,8 @@ bool write_mesh_file(const implicit::GridSource& source, const std::string& part
   const auto writer = make_mesh_writer(write.ascii ? MeshFormat::stl_ascii : format, *file);
   MeasuredMeshSink<float> measured(*writer);
   const std::size_t errors = sink.error_count();
-  const auto contoured =
-      implicit::contour(source, options.measure ? static_cast<MeshSink&>(measured) : *writer, {}, options.run, sink);
+  const auto contoured = implicit::contour(source, options.measure ? static_cast<MeshSink&>(measured) : *writer,
+                                           {.sharp = options.sharp}, options.run, sink);
   if (contoured && contoured->triangles == 0) {  // what stands at `out` stays
     sink.report({.code = Code::geometry_empty, .args = {part_name}});
     return false;

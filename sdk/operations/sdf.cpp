@@ -144,6 +144,7 @@ bool Job::contour_into(MeshSink& writer) {
       implicit::contour(*source, options_.measure ? static_cast<MeshSink&>(measured) : writer,
                         {.polish = options_.polish,
                          .coordinate_step = std::is_same_v<Real, float> ? float_step(report_.grid.box) : 0,
+                         .sharp = options_.sharp,
                          .collapse_slivers = options_.no_slivers},
                         options_.run, sink_);
   if (!contoured) return false;
@@ -186,7 +187,9 @@ bool Job::extrapolate() {
   const auto source = source_on(coarse);
   NoMesh none;
   MeasuredMeshSink<double> measured(none);
-  if (!source || !implicit::contour(*source, measured, {.polish = options_.polish}, run, sink_)) return false;
+  if (!source ||
+      !implicit::contour(*source, measured, {.polish = options_.polish, .sharp = options_.sharp}, run, sink_))
+    return false;
   const MeshMeasures& fine = *report_.measures;
   const MeshMeasures half = measured.measures(0);
   const double square = std::pow(ratio, 2. / 3), share = 1 / (square - 1);

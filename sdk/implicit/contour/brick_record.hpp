@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// All that the second pass needs to know of a brick: signs as run lengths, how many vertices each row has, and the few
-// cells whose faces join. 8 bytes a row and 2 a crossing, or a bit a node where that is less.
+// All that the second pass needs to know of a brick: signs as run lengths, how many vertices each row has, the few
+// cells whose faces join, and those with sharp edges. 8 bytes a row and 2 a crossing, or a bit a node where that is
+// less.
 
 #include <bit>
 #include <cstring>
@@ -26,6 +27,15 @@ struct JoinedCell {
   std::uint8_t joined = 0;
 };
 
+/// A vertex on a sharp edge or corner of the solid, in the middle of one loop of a cell.
+struct Feature {
+  std::uint32_t row = 0;  ///< as of JoinedCell
+  std::uint16_t cell = 0;
+  std::uint16_t edges = 0;   ///< bit set: those of the loop
+  std::uint8_t faces = 0;    ///< bit set: through which the sharp edge goes on
+  std::uint32_t vertex = 0;  ///< counted from the brick's first
+};
+
 struct BrickRecord {
   std::vector<std::uint16_t> signs;  ///< row after row: RowCounts, then crossings or words
   std::size_t last_plane = 0;        ///< where in `signs` it begins
@@ -33,9 +43,11 @@ struct BrickRecord {
   std::uint64_t last_plane_vertices = 0;
   std::uint64_t undefined = 0;
   std::vector<JoinedCell> joined;
+  std::vector<Feature> features;  ///< by row, cell and loop
 
   [[nodiscard]] std::uint64_t bytes() const {
-    return signs.capacity() * sizeof signs[0] + joined.capacity() * sizeof joined[0];
+    return signs.capacity() * sizeof signs[0] + joined.capacity() * sizeof joined[0] +
+           features.capacity() * sizeof features[0];
   }
 };
 

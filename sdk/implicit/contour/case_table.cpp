@@ -138,21 +138,33 @@ class Triangulation {
   std::array<std::array<std::size_t, 12>, 12> apex_{};
 };
 
-CellTriangles triangles_of_cell(unsigned inside, unsigned joined) {
-  CellTriangles cell;
-  for (const Loop& loop : trace_loops(inside, joined)) {
-    const Triangulation triangulation(loop);
-    if (triangulation.exists()) {
-      triangulation.add_to(cell);
-      continue;
-    }
-    assert(cell.centre_edges == 0);  // at most one loop of a cell needs one
-    for (std::size_t i = 0; i < loop.size(); ++i) {
-      cell.centre_edges |= static_cast<std::uint16_t>(1U << loop[i]);
-      add(cell, loop[i], loop[(i + 1) % loop.size()], centre_vertex);
-    }
+void triangulate(const Loop& loop, CellTriangles& cell) {
+  const Triangulation triangulation(loop);
+  if (triangulation.exists()) return triangulation.add_to(cell);
+  assert(cell.centre_edges == 0);  // at most one loop of a cell needs one
+  for (std::size_t i = 0; i < loop.size(); ++i) {
+    cell.centre_edges |= static_cast<std::uint16_t>(1U << loop[i]);
+    add(cell, loop[i], loop[(i + 1) % loop.size()], centre_vertex);
   }
-  return cell;
+}
+
+void make_cell(unsigned inside, unsigned joined, CellTriangles& cell, CellLoops& loops) {
+  for (const Loop& loop : trace_loops(inside, joined)) {
+    CellLoop& out = loops.loops[loops.count++];
+    const unsigned centre_before = cell.centre_edges;
+    out.size = static_cast<std::uint8_t>(loop.size());
+    out.first_triangle = cell.count;
+    std::copy(loop.begin(), loop.end(), out.edges.begin());
+    triangulate(loop, cell);
+    out.triangle_count = static_cast<std::uint8_t>(cell.count - out.first_triangle);
+    out.has_centre = cell.centre_edges != centre_before;
+  }
+}
+
+std::uint8_t find_common_face(std::uint8_t a, std::uint8_t b) {
+  for (std::uint8_t f = 0; f < 6; ++f)
+    if (in_face(a, f) && in_face(b, f)) return f;
+  return 6;
 }
 
 }  // namespace
@@ -163,12 +175,19 @@ CaseTable::CaseTable() {
     for (unsigned joined = 0; joined < 64; ++joined) {
       if ((joined & ~unsigned{ambiguous}) != 0) continue;
       slot_[64 * inside + joined] = static_cast<std::uint16_t>(cells_.size());
-      cells_.push_back(triangles_of_cell(inside, joined));
+      make_cell(inside, joined, cells_.emplace_back(), loops_.emplace_back());
     }
     const CellTriangles& cell = at(inside, 0);
     assert(cell.count <= 5 && cell.centre_edges == 0);
     std::copy_n(cell.triangles.begin(), 5, plain_[inside].triangles.begin());
     plain_[inside].count = cell.count;
+  }
+  for (std::uint8_t a = 0; a < 12; ++a) {
+    for (std::uint8_t b = 0; b < 12; ++b) common_face_[a][b] = find_common_face(a, b);
+    for (unsigned face = 0; face < 6; ++face)
+      if (in_face(a, face)) edges_of_face_[face] |= static_cast<std::uint16_t>(1U << a);
+    for (unsigned axis = 0; axis < 3; ++axis)
+      mirrored_[a][axis] = edge_between(edge_corners[a][0] ^ 1U << axis, edge_corners[a][1] ^ 1U << axis);
   }
 }
 

@@ -32,6 +32,17 @@ struct CellTriangles {
   std::array<std::array<std::uint8_t, 3>, 12> triangles{};
 };
 
+/// A closed line of crossed edges around a part of the surface, and the triangles of that part.
+struct CellLoop {
+  std::uint8_t size = 0, first_triangle = 0, triangle_count = 0;
+  bool has_centre = false;
+  std::array<std::uint8_t, 12> edges{};  ///< consecutive ones share a face
+};
+struct CellLoops {
+  std::uint8_t count = 0;
+  std::array<CellLoop, 4> loops{};
+};
+
 /// What the fast path reads: cells without joined faces. Five triangles are always written, `count` of them are meant.
 struct PlainCell {
   std::array<std::array<std::uint8_t, 3>, 5> triangles{};
@@ -49,6 +60,15 @@ class CaseTable {
   [[nodiscard]] const CellTriangles& at(unsigned inside, unsigned joined) const {
     return cells_[slot_[64 * inside + (joined & ambiguous_[inside])]];
   }
+  [[nodiscard]] const CellLoops& loops(unsigned inside, unsigned joined) const {
+    return loops_[slot_[64 * inside + (joined & ambiguous_[inside])]];
+  }
+  /// The face that two edges of a cell have in common; they have one.
+  [[nodiscard]] std::uint8_t common_face(std::uint8_t a, std::uint8_t b) const { return common_face_[a][b]; }
+  /// Bit set.
+  [[nodiscard]] std::uint16_t edges_of_face(unsigned face) const { return edges_of_face_[face]; }
+  /// An edge of a face across `axis`, as the cell on the other side of that face counts it.
+  [[nodiscard]] std::uint8_t mirrored(std::uint8_t edge, unsigned axis) const { return mirrored_[edge][axis]; }
 
  private:
   CaseTable();
@@ -57,6 +77,10 @@ class CaseTable {
   std::array<std::uint8_t, 256> ambiguous_{};
   std::array<std::uint16_t, 256 * 64> slot_{};
   std::vector<CellTriangles> cells_;
+  std::vector<CellLoops> loops_;
+  std::array<std::array<std::uint8_t, 12>, 12> common_face_{};
+  std::array<std::array<std::uint8_t, 3>, 12> mirrored_{};
+  std::array<std::uint16_t, 6> edges_of_face_{};
 };
 
 }  // namespace meso::implicit

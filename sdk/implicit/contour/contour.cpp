@@ -175,9 +175,13 @@ bool Contouring::face_pass() {
   return for_each_brick(
       output, [&] { return FacePass(layout_, sink_); },
       [&](FacePass& pass, std::size_t brick, ByteBuffer& bytes) {
-        const BrickView view{first_plane(brick), last_plane(brick), &records_[brick],
-                             static_cast<std::uint32_t>(first_vertex_[brick]),
-                             brick == 0 ? nullptr : &records_[brick - 1]};
+        const auto beside = [&](std::size_t b) -> BrickView::Neighbour {
+          if (b >= bricks_) return {};
+          return {&records_[b], first_plane(b), static_cast<std::uint32_t>(first_vertex_[b])};
+        };
+        const BrickView view{first_plane(brick), last_plane(brick),
+                             &records_[brick],   static_cast<std::uint32_t>(first_vertex_[brick]),
+                             beside(brick - 1),  beside(brick + 1)};
         triangles_ += pass.run(view, bytes, [&] {
           output.offer(brick, bytes);
           return pulse_.beat();

@@ -41,24 +41,28 @@ FacePass::FacePass(const Layout& layout, const MeshSink& sink)
 }
 
 std::uint64_t FacePass::run(const BrickView& brick, ByteBuffer& out, const std::function<bool()>& after_row) {
-  if (brick.below == nullptr) {
+  brick_ = &brick;
+  if (brick.below.record == nullptr) {
     above_->clear();
   } else {
-    const std::uint16_t* from = brick.below->signs.data() + brick.below->last_plane;
-    auto next = brick.first_vertex - static_cast<std::uint32_t>(brick.below->last_plane_vertices);
+    const BrickRecord& below = *brick.below.record;
+    const std::uint16_t* from = below.signs.data() + below.last_plane;
+    auto next = brick.first_vertex - static_cast<std::uint32_t>(below.last_plane_vertices);
     above_->read(from, next);
   }
   std::uint64_t count = 0;
   const std::uint16_t* from = brick.record->signs.data();
   std::uint32_t next = brick.first_vertex;
   auto joined = std::span(brick.record->joined);
+  auto features = std::span(brick.record->features);
   for (std::size_t k = brick.first; k < brick.last; ++k) {
     std::swap(below_, above_);
     above_->read(from, next);
     for (std::size_t j = 0; j <= layout_.ny; ++j) {
       const std::size_t row = (k - brick.first) * (layout_.ny + 1) + j;
-      std::size_t cells = 0;
+      std::size_t cells = 0, sharp = 0;
       while (cells < joined.size() && joined[cells].row == row) ++cells;
+      while (sharp < features.size() && features[sharp].row == row) ++sharp;
       const std::size_t before = filled_;
       const auto sj = static_cast<std::ptrdiff_t>(j);
       a_ = below_->at(sj - 1);
@@ -66,12 +70,13 @@ std::uint64_t FacePass::run(const BrickView& brick, ByteBuffer& out, const std::
       c_ = above_->at(sj - 1);
       d_ = above_->at(sj);
       find_active_cells();
-      const bool plain = cells == 0 && j > 0 && j < layout_.ny && k > 0 && k < layout_.nz;
+      const bool plain = cells == 0 && sharp == 0 && j > 0 && j < layout_.ny && k > 0 && k < layout_.nz;
       if (plain)
         plain_row(j);
       else if (active_ > 0)
-        special_row(j, k, joined.first(cells));
+        special_row(j, k, joined.first(cells), features.first(sharp));
       joined = joined.subspan(cells);
+      features = features.subspan(sharp);
       count += filled_ - before;
       if (filled_ >= chunk) flush(out);
       if (!after_row()) return count;

@@ -3,6 +3,7 @@
 // The second pass over a brick of planes: from the recorded signs to triangles whose vertices have their final numbers.
 
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "bits.hpp"
@@ -13,12 +14,17 @@
 
 namespace meso::implicit {
 
-/// A brick as the second pass sees it.
+/// A brick as the second pass sees it, and the ones beside it.
 struct BrickView {
+  struct Neighbour {
+    const BrickRecord* record = nullptr;  ///< null: there is none
+    std::size_t first = 0;                ///< plane
+    std::uint32_t first_vertex = 0;
+  };
   std::size_t first = 0, last = 0;  ///< planes
   const BrickRecord* record = nullptr;
   std::uint32_t first_vertex = 0;
-  const BrickRecord* below = nullptr;  ///< the brick before; null for the first
+  Neighbour below, above;
 };
 
 /// One per thread.
@@ -35,7 +41,12 @@ class FacePass {
     return two_signs(a_, cell) | two_signs(b_, cell) << 2 | two_signs(c_, cell) << 4 | two_signs(d_, cell) << 6;
   }
   void plain_row(std::size_t j);
-  void special_row(std::size_t j, std::size_t k, std::span<const JoinedCell> joined);
+  void special_row(std::size_t j, std::size_t k, std::span<const JoinedCell> joined, std::span<const Feature> features);
+  void add_triangle(const IndexTriangle& triangle);
+  void sharp_cell(std::size_t j, std::size_t k, unsigned inside, unsigned joined, std::span<const Feature> features,
+                  const std::array<std::uint32_t, 13>& ids);
+  [[nodiscard]] std::optional<std::uint32_t> feature_across(unsigned face, std::uint8_t edge, const Feature& feature,
+                                                            std::size_t j, std::size_t k) const;
   void number_y(SignPlane& plane, std::size_t j, std::vector<std::uint32_t>& to);
   void number_z(std::size_t j, std::size_t k, std::vector<std::uint32_t>& to);
   void number_row_on_box(const std::uint64_t* p, const std::uint64_t* q, const RowNumbers& row, std::uint32_t next,
@@ -59,6 +70,7 @@ class FacePass {
   std::vector<std::uint16_t> cells_;                                               // with corners inside and outside
   std::size_t active_ = 0;
   std::vector<std::uint32_t> y0_, y1_, z0_, z1_;  // numbers of vertices by node, for special rows
+  const BrickView* brick_ = nullptr;
   std::vector<IndexTriangle> triangles_;
   std::size_t filled_ = 0;
 };

@@ -39,25 +39,30 @@ unsigned corners_inside(const CellRows& rows, std::size_t b) {
 VertexPass::VertexPass(const Layout& layout, const GridSource& source, const MeshSink& sink,
                        const ContourOptions& options, std::function<bool()> go_on)
     : layout_(layout),
+      go_on_(std::move(go_on)),
       sampler_(source.sampler()),
       sink_(sink),
       signs_only_(source.signs_only()),
-      polish_(options.polish),
+      polish_(options.polish || options.sharp),
       roots_(options.coordinate_step),
       rows_(layout),
       x_(layout.nx + 1),
       y_(layout.nx + 1),
       z_(layout.nx + 1),
       points_(chunk + 4 * (layout.nx + 1)) {
+  if (options.sharp) sharp_.emplace(layout, source.grid());
   if (!signs_only_) return;
-  auto edge_ends =
-      std::make_unique<EdgeEndSampler>(source.grid(), std::move(sampler_), source.exact_within(), std::move(go_on));
+  auto edge_ends = std::make_unique<EdgeEndSampler>(source.grid(), std::move(sampler_), source.exact_within(), go_on_);
   edge_ends_ = edge_ends.get();
   sampler_ = std::move(edge_ends);
 }
 
 std::uint64_t VertexPass::grown_by() {
-  const std::uint64_t now = std::max(told_bytes_, edge_ends_ == nullptr ? 0 : edge_ends_->bytes());
+  std::uint64_t now = edge_ends_ == nullptr ? 0 : edge_ends_->bytes();
+  if (sharp_)
+    now += sharp_->crossings.bytes() + sharp_->finder.bytes() +
+           (points_.capacity() + sharp_->with_features.capacity()) * sizeof(Vec3);
+  now = std::max(told_bytes_, now);
   return now - std::exchange(told_bytes_, now);
 }
 
@@ -65,11 +70,13 @@ BrickRecord VertexPass::run(std::size_t first, std::size_t last, ByteBuffer& out
                             const std::function<bool()>& after_row) {
   BrickRecord record;
   signs_.clear();
+  row_starts_.clear();
   // This thread did the brick before, and has its last plane; but not the values for edges that leave it.
-  const bool continues = first > 0 && sampled_ == first && !signs_only_;
+  const bool continues = first > 0 && sampled_ == first && !signs_only_ && !sharp_;
   const std::size_t from = continues || first == 0 ? first : first - 1;
   sampler_->begin_slab(static_cast<std::int32_t>(from), static_cast<std::int32_t>(std::min(last, layout_.nz)));
   if (!continues) joined_.begin_brick();
+  if (sharp_) sharp_->crossings.begin(from);
   if (from < first) sample_plane_below(from);
   for (std::size_t k = first; k < last; ++k) {
     joined_.begin_plane();
@@ -78,13 +85,16 @@ BrickRecord VertexPass::run(std::size_t first, std::size_t last, ByteBuffer& out
     for (std::size_t j = 0; j <= layout_.ny; ++j) {
       const auto cell_row = static_cast<std::uint32_t>((k - first) * (layout_.ny + 1) + j);
       row(j, k, cell_row, record);
-      if (filled_ >= chunk) flush(out);
+      if (filled_ >= chunk && !sharp_) flush(out);
       if (!after_row()) return record;
     }
     record.last_plane_vertices = record.vertices - before;
     sampled_ = k + 1;
   }
-  flush(out);
+  if (sharp_)
+    add_features(first, last, record, out);
+  else
+    flush(out);
   record.signs.assign(signs_.begin(), signs_.end());
   return record;
 }
@@ -94,10 +104,19 @@ void VertexPass::sample_plane_below(std::size_t k) {
   for (std::size_t j = 0; j < layout_.ny; ++j) {
     const SampleRow& d = rows_.fresh();
     sampler_->row(static_cast<std::int32_t>(j), static_cast<std::int32_t>(k), d.values, d.inside);
-    const CellRows rows{{}, {}, rows_.at(static_cast<std::ptrdiff_t>(j) - 1), d};
+    // No edge from below is looked at: the row stands for the one below itself.
+    const CellRows rows{rows_.outside(), d, rows_.at(static_cast<std::ptrdiff_t>(j) - 1), d};
     for (std::size_t w = 0; w < layout_.words; ++w) joined_.find_across_z(rows, static_cast<std::uint32_t>(j), w);
+    if (sharp_) {
+      find_crossings(rows, j, k, false);
+      BrickRecord belongs_to_the_brick_below;
+      add_vertices(rows, j, k, belongs_to_the_brick_below);
+      keep_crossings(rows);
+    }
     rows_.replace(j);
   }
+  nx_ = ny_ = nz_ = 0;
+  if (sharp_) keep_crossings({rows_.outside(), rows_.outside(), rows_.outside(), rows_.outside()});
 }
 
 void VertexPass::row(std::size_t j, std::size_t k, std::uint32_t cell_row, BrickRecord& record) {
@@ -117,7 +136,7 @@ void VertexPass::row(std::size_t j, std::size_t k, std::uint32_t cell_row, Brick
     }
   }
   joined_.begin_row();
-  find_crossings(rows, j, k);
+  find_crossings(rows, j, k, true);
   const std::size_t old_cells = record.joined.size();
   joined_.collect(static_cast<std::uint32_t>(j), cell_row, record.joined);
   add_vertices(rows, j, k, record);
@@ -126,6 +145,12 @@ void VertexPass::row(std::size_t j, std::size_t k, std::uint32_t cell_row, Brick
                    0};
   if (record.joined.size() > old_cells)
     counts.centre = add_centres(rows, j, k, std::span(record.joined).subspan(old_cells));
+  if (sharp_) {
+    filled_ -= counts.centre;
+    keep_crossings(rows);
+    filled_ += counts.centre;
+    row_starts_.push_back(signs_.size());
+  }
   append_row(signs_, counts, x_.data(), rows.d.inside, layout_.words);
   record.vertices += counts.total();
   if (k < layout_.nz && j < layout_.ny) rows_.replace(j);
@@ -138,7 +163,7 @@ void VertexPass::prefetch_next_row(std::size_t j) const {
   for (std::size_t n = 0; n < nz_; ++n) __builtin_prefetch(below + z_[n]);
 }
 
-void VertexPass::find_crossings(const CellRows& rows, std::size_t j, std::size_t k) {
+void VertexPass::find_crossings(const CellRows& rows, std::size_t j, std::size_t k, bool looks_at_faces) {
   std::uint16_t *x_end = x_.data(), *y_end = y_.data(), *z_end = z_.data();
   const PadVertices pads(layout_, j, k);
   for (std::size_t w = 0; w < layout_.words; ++w) {
@@ -148,8 +173,8 @@ void VertexPass::find_crossings(const CellRows& rows, std::size_t j, std::size_t
     x_end = append_bits(x, w, x_end);
     y_end = append_bits(y & pads.y_mask(w), w, y_end);
     z_end = append_bits(z & pads.z_mask(w), w, z_end);
-    if ((x & y) != 0) joined_.find_across_z(rows, static_cast<std::uint32_t>(j), w);
-    if ((x & z) != 0 || (y & z) != 0) joined_.find_across_x_and_y(rows, w);
+    if (looks_at_faces && (x & y) != 0) joined_.find_across_z(rows, static_cast<std::uint32_t>(j), w);
+    if (looks_at_faces && ((x & z) != 0 || (y & z) != 0)) joined_.find_across_x_and_y(rows, w);
   }
   nx_ = static_cast<std::size_t>(x_end - x_.data());
   ny_ = static_cast<std::size_t>(y_end - y_.data());
@@ -160,6 +185,7 @@ void VertexPass::add_vertices(const CellRows& rows, std::size_t j, std::size_t k
   const auto sj = static_cast<std::ptrdiff_t>(j), sk = static_cast<std::ptrdiff_t>(k);
   const double y = layout_.y(sj), z = layout_.z(sk), y0 = layout_.y(sj - 1), z0 = layout_.z(sk - 1);
   const float *const b = rows.b.values, *const c = rows.c.values, *const d = rows.d.values;
+  if (sharp_ && points_.size() < filled_ + 4 * (layout_.nx + 1)) points_.resize(2 * points_.size());
   Vec3* to = points_.data() + filled_;
   bool undefined = false;
   for (std::size_t n = 0; n < nx_; ++n) {
@@ -221,6 +247,39 @@ std::uint16_t VertexPass::add_centres(const CellRows& rows, std::size_t j, std::
     points_[filled_++] = sum / std::popcount(edges);
   }
   return count;
+}
+
+// The row's points are the last ones but for those in the middle of cells.
+void VertexPass::keep_crossings(const CellRows& rows) {
+  sharp_->crossings.add_row(filled_ - nx_ - ny_ - nz_, {x_.data(), nx_}, {y_.data(), ny_}, {z_.data(), nz_},
+                            rows.d.inside);
+}
+
+// Features are the last vertices of their rows.
+void VertexPass::add_features(std::size_t first, std::size_t last, BrickRecord& record, ByteBuffer& out) {
+  roots_.solve(*sampler_, points_);
+  const std::span<const Vec3> points(points_.data(), filled_);
+  const auto& found = sharp_->finder.find(sharp_->crossings, points, first, last, record.joined, *sampler_, go_on_);
+  std::vector<Vec3>& all = sharp_->with_features;
+  all.clear();
+  auto next = found.begin();
+  for (std::size_t row = 0; row < row_starts_.size(); ++row) {
+    const std::size_t j = row % (layout_.ny + 1), k = first + row / (layout_.ny + 1);
+    std::uint16_t* const counts = &signs_[row_starts_[row]];  // x, y, z, centre
+    const std::size_t begin = sharp_->crossings.row(j, k).first_point;
+    all.insert(all.end(), points.begin() + static_cast<std::ptrdiff_t>(begin),
+               points.begin() + static_cast<std::ptrdiff_t>(begin + counts[0] + counts[1] + counts[2] + counts[3]));
+    for (; next != found.end() && next->feature.row == row; ++next) {
+      record.features.push_back(next->feature);
+      record.features.back().vertex = static_cast<std::uint32_t>(all.size());
+      all.push_back(next->position);
+      ++counts[3];
+      ++record.vertices;
+      if (k + 1 == last) ++record.last_plane_vertices;
+    }
+  }
+  sink_.encode_points(all, out);
+  filled_ = 0;
 }
 
 void VertexPass::flush(ByteBuffer& out) {
