@@ -10,32 +10,20 @@
 #include "meso/expr/expression.hpp"
 #include "meso/implicit/flat_term.hpp"
 #include "meso/implicit/surfaces.hpp"
+#include "meso/model/describe.hpp"
+#include "point_terms.hpp"
 
 namespace meso::implicit {
 namespace {
-
-std::array<Term, 3> scaled(double factor, const std::array<Term, 3>& p) {
-  if (factor == 1) return p;
-  return {factor * p[0], factor * p[1], factor * p[2]};
-}
-
-/// Which of `x y z` with the prefix it is.
-std::optional<std::size_t> coordinate(std::string_view name, std::string_view prefix) {
-  if (name.size() != prefix.size() + 1 || !name.starts_with(prefix)) return {};
-  const char c = name.back();
-  return c >= 'x' && c <= 'z' ? std::optional(static_cast<std::size_t>(c - 'x')) : std::nullopt;
-}
 
 /// What has no value is outside (min gives its first operand there).
 Term outside_where_undefined(const Term& term, const Box3& box) {
   return interval_of(term, box).undefined ? min(Term::constant(1e30), term) : term;
 }
 
-std::vector<std::string> names_of(const Expression& expression, LengthUnit unit) {
-  std::vector<std::string> names;
-  if (const auto parsed = expr::parse_expression(expression.text, unit); parsed.expression)
-    for (const expr::Name& name : parsed.expression->names()) names.push_back(name.text);
-  return names;
+/// function < level
+Term below(const Term& function, const Term& level) {
+  return level.is_constant() && level.node().number == 0 ? function : function - level;
 }
 
 }  // namespace
@@ -46,88 +34,6 @@ ImplicitCells::ImplicitCells(const eval::Evaluation& evaluation, const eval::Cel
       report_(report),
       body_(std::get<ImplicitBody>(cells.unit_cell().body)),
       unit_mm_(millimeters_per(evaluation.document().unit)) {}
-
-std::optional<Term> ImplicitCells::term(const Expression& expression, ElementId where, std::string_view attribute,
-                                        const Meaning& meaning) const {
-  const auto parsed = expr::parse_expression(expression.text, evaluation_.document().unit);
-  if (!parsed.expression) return std::nullopt;  // validation has read it
-  std::vector<Term> terms;
-  for (const expr::Name& name : parsed.expression->names()) {
-    auto one = meaning(name.text);
-    if (!one) {
-      report_(Code::not_yet_evaluated, where, {"the name '" + name.text + "' in " + std::string(attribute)});
-      return std::nullopt;
-    }
-    terms.push_back(std::move(*one));
-  }
-  return Term::from_expression(*parsed.expression, terms);
-}
-
-// for points: sets see document parameters and the point's place; defaults that follow see what they saw in
-// the cell.
-std::optional<std::vector<Term>> ImplicitCells::parameters_at(const eval::PlacedCell& cell,
-                                                              const CellPoint& point) const {
-  const auto& parameters = cells_.unit_cell().parameters;
-  const auto& instructions = cells_.pattern().instructions;
-  const LengthUnit unit = evaluation_.document().unit;
-  std::vector<Term> values;
-  for (const double v : cell.parameters) values.push_back(Term::constant(v));
-  const auto position = [&](const std::string& name) {
-    return static_cast<std::size_t>(
-        std::ranges::find(parameters, name, [](const CellParameter& p) { return p.name.text; }) - parameters.begin());
-  };
-  std::vector<bool> is_set(parameters.size(), false);
-  std::vector<const SetInstruction*> at_points;
-  for (const Instruction& instruction : instructions) {
-    const auto* set = std::get_if<SetInstruction>(&instruction);
-    if (set == nullptr) continue;
-    if (set->at.value_or(SetAt::cell) == SetAt::point)
-      at_points.push_back(set);
-    else
-      is_set[position(set->parameter.text)] = true;
-  }
-  if (at_points.empty()) return values;
-
-  const std::array<Term, 3> place = scaled(1 / unit_mm_, point.global);
-  const Meaning at_point = [&](const std::string& name) -> std::optional<Term> {
-    if (const auto axis = coordinate(name, "global.")) return place[*axis];
-    const auto value = evaluation_.parameter(name);
-    return value ? std::optional(Term::constant(*value)) : std::nullopt;
-  };
-  const Meaning in_cell = [&](const std::string& name) -> std::optional<Term> {
-    if (const std::size_t p = position(name); p < parameters.size()) return values[p];
-    if (const auto axis = coordinate(name, "global.")) return Term::constant(cell.global[*axis] / unit_mm_);
-    const auto value = evaluation_.parameter(name);
-    return value ? std::optional(Term::constant(*value)) : std::nullopt;
-  };
-  for (const SetInstruction* set : at_points) {
-    const std::size_t p = position(set->parameter.text);
-    auto value = term(set->value, set->id_in_source, "value", at_point);
-    if (!value) return std::nullopt;
-    values[p] = std::move(*value);
-    is_set[p] = true;
-    std::vector<bool> follows(parameters.size(), false);
-    follows[p] = true;
-    for (std::size_t f = p + 1; f < parameters.size(); ++f) {
-      const auto names = names_of(parameters[f].value, unit);
-      follows[f] = !is_set[f] && std::ranges::any_of(names, [&](const std::string& name) {
-        const std::size_t n = position(name);
-        return n < f && follows[n];
-      });
-      if (!follows[f]) continue;
-      value = term(parameters[f].value, parameters[f].id_in_source, "value", in_cell);
-      if (!value) return std::nullopt;
-      values[f] = std::move(*value);
-    }
-  }
-  return values;
-}
-
-std::optional<Term> ImplicitCells::level(const std::optional<Expression>& expression, std::string_view attribute,
-                                         const Meaning& meaning) const {
-  if (!expression) return Term::constant(0);
-  return term(*expression, body_.id_in_source, attribute, meaning);
-}
 
 Term ImplicitCells::surface_at(const Surface& surface, const eval::BoxShape& box, const CellPoint& point) const {
   const auto parsed = expr::parse_expression(surface.expression, LengthUnit::millimeter);
@@ -142,59 +48,146 @@ Term ImplicitCells::surface_at(const Surface& surface, const eval::BoxShape& box
   return Term::from_expression(*parsed.expression, terms);
 }
 
-std::optional<Term> ImplicitCells::body_at(const eval::PlacedCell& cell, const eval::BoxShape& box,
-                                           const CellPoint& point) const {
-  const auto values = parameters_at(cell, point);
-  if (!values) return std::nullopt;
+/// A surface in a blend is divided by this, so that equal weights mean equal parts. The mean over one period; for sums
+/// of sines that of a regular grid is exact.
+double ImplicitCells::root_mean_square(const Surface& surface) {
+  const auto [known, is_new] = root_mean_squares_.try_emplace(std::string(surface.name), 0);
+  if (!is_new) return known->second;
+  CellPoint point;
+  for (std::size_t i = 0; i < 3; ++i) point.local[i] = Term::coordinate(i);
+  const FlatTerm flat(surface_at(surface, {{}, {1, 1, 1}}, point));
+  constexpr int along = 32;
+  double sum = 0;
+  for (int i = 0; i < along; ++i)
+    for (int j = 0; j < along; ++j)
+      for (int k = 0; k < along; ++k) {
+        const double f = flat.value({(i + 0.25) / along, (j + 0.25) / along, (k + 0.25) / along});
+        sum += f * f;
+      }
+  return known->second = std::sqrt(sum / (along * along * along));
+}
+
+/// The second half of the box shows the first in a mirror, along the axes that the document names; so does every copy.
+CellPoint ImplicitCells::mirrored(const CellPoint& point, const eval::BoxShape& box) const {
+  if (!body_.mirror) return point;
+  CellPoint result = point;
+  for (const char axis : enum_texts<ImplicitMirror>[static_cast<std::size_t>(*body_.mirror)]) {
+    const auto a = static_cast<std::size_t>(axis - 'x');
+    const double half = box.size[a] / 2;
+    Term from_middle = point.local[a] - (box.corner[a] + half);
+    if (!point.is_in_box)  // the nearest of all middles
+      from_middle = from_middle - box.size[a] * Term::apply(expr::Op::floor, {(1 / box.size[a]) * from_middle - -0.5});
+    result.local[a] = Term::constant(box.corner[a] + half) - abs(from_middle);
+  }
+  return result;
+}
+
+std::optional<Term> ImplicitCells::function_of(const std::optional<Expression>& field,
+                                               const std::optional<std::string>& name, const Element& where,
+                                               const eval::BoxShape& box, const CellPoint& point,
+                                               const Meaning& meaning) {
+  if (field) return term(*field, where.id_in_source, "field", meaning);
+  if (const Surface* surface = find_surface(*name)) {
+    const Term f = surface_at(*surface, box, point);
+    return body_.blends.empty() ? f : (1 / root_mean_square(*surface)) * f;
+  }
+  const auto near = nearest_surface(*name);
+  report_(Code::implicit_unknown_surface, where.id_in_source,
+          {*name, near.empty() ? "" : "; did you mean '" + std::string(near) + "'?"});
+  return std::nullopt;
+}
+
+// a left fold, so that any number of functions keep shares whose sum is 1.
+std::optional<Term> ImplicitCells::blended(const eval::BoxShape& box, const CellPoint& point, const Meaning& meaning,
+                                           std::vector<Term>& weights) {
+  auto f = function_of(body_.field, body_.surface, body_, box, point, meaning);
+  for (const ImplicitBlend& blend : body_.blends) {
+    const auto g = function_of(blend.field, blend.surface, blend, box, point, meaning);
+    const auto w = term(blend.weight, blend.id_in_source, "weight", meaning);
+    if (!f || !g || !w) return std::nullopt;
+    weights.push_back(*w);
+    f = *f + *w * (*g - *f);
+  }
+  return f;
+}
+
+std::optional<ImplicitCells::Parts> ImplicitCells::parts(const Values& values, const eval::BoxShape& box,
+                                                         const CellPoint& given) {
+  const CellPoint point = mirrored(given, box);
   const auto& parameters = cells_.unit_cell().parameters;
   const std::array<Term, 3> xyz = scaled(1 / unit_mm_, point.local);
   const Meaning meaning = [&](const std::string& name) -> std::optional<Term> {
     if (const auto axis = coordinate(name, "")) return xyz[*axis];
     for (std::size_t p = 0; p < parameters.size(); ++p)
-      if (parameters[p].name.text == name) return (*values)[p];
+      if (parameters[p].name.text == name) return values[p];
     const auto value = evaluation_.parameter(name);
     return value ? std::optional(Term::constant(*value)) : std::nullopt;
   };
-  std::optional<Term> f;
-  if (!body_.surface) {
-    f = term(*body_.field, body_.id_in_source, "field", meaning);
-  } else if (const Surface* surface = find_surface(*body_.surface)) {
-    f = surface_at(*surface, box, point);
-  } else {
-    const auto near = nearest_surface(*body_.surface);
-    report_(Code::implicit_unknown_surface, body_.id_in_source,
-            {*body_.surface, near.empty() ? "" : "; did you mean '" + std::string(near) + "'?"});
-  }
+  Parts made;
+  const auto f = blended(box, point, meaning, made.weights);
   const auto isovalue = level(body_.isovalue, "isovalue", meaning), lower = level(body_.lower, "lower", meaning),
-             upper = level(body_.upper, "upper", meaning), thickness = level(body_.thickness, "thickness", meaning);
-  if (!f || !isovalue || !lower || !upper || !thickness) return std::nullopt;
+             upper = level(body_.upper, "upper", meaning), thickness = level(body_.thickness, "thickness", meaning),
+             density = level(body_.density, "density", meaning), wall = level(body_.wall, "wall", meaning);
+  if (!f || !isovalue || !lower || !upper || !thickness || !density || !wall) return std::nullopt;
+  if (body_.density) made.share = density;
   const bool at_zero = isovalue->is_constant() && isovalue->node().number == 0;
   const Term from_level = at_zero ? *f : *f - *isovalue;
   switch (body_.kind.value_or(ImplicitKind::endoskeleton)) {
     case ImplicitKind::endoskeleton:
-      return from_level;
+      made.function = from_level;
+      return made;
     case ImplicitKind::exoskeleton:
-      return -from_level;
+      made.function = -from_level;
+      return made;
     case ImplicitKind::shell:
-      return abs(from_level) - 0.5 * *thickness;
+      if (body_.wall) made.wall_mm = unit_mm_ * *wall;
+      made.function = body_.wall ? from_level : abs(from_level);
+      made.level = 0.5 * *thickness;
+      return made;
     case ImplicitKind::eccentric_shell:
       break;
   }
-  return max(*lower - *f, *f - *upper);
+  made.function = max(*lower - *f, *f - *upper);
+  return made;
 }
 
-std::optional<Term> ImplicitCells::body(const eval::PlacedCell& cell, const eval::BoxShape& box,
-                                        const CellPoint& point) const {
-  const auto given = body_at(cell, box, point);
-  if (!given) return std::nullopt;
+std::optional<Term> ImplicitCells::plain_body(const eval::PlacedCell& cell, const eval::BoxShape& box,
+                                              const CellPoint& point) {
+  const auto values = parameters_at(cell, point, {});
+  const auto made = values ? parts(*values, box, point) : std::nullopt;
+  if (!made) return std::nullopt;
+  const Term& level = made->share ? *made->share : made->wall_mm ? *made->wall_mm : made->level;
+  return below(made->function, level);
+}
+
+std::optional<Term> ImplicitCells::body(const eval::PlacedCell& cell, const eval::BoxShape& box, const CellPoint& point,
+                                        const BodyUse& use) {
+  const std::size_t errors = report_.sink().error_count();
+  quantities_.clear();
+  const auto values = parameters_at(cell, point, use.region.bounds());
+  const auto made = values ? parts(*values, box, point) : std::nullopt;
+  if (!made) return std::nullopt;
+  std::vector<Vec3> points;
+  if (varies_by_point() || !made->weights.empty() || made->share) points = points_in(use);
+  if (!ask_fields(points) || !check_weights(*made, points)) return std::nullopt;
+  if (made->wall_mm) {
+    see_wall(*made->wall_mm, points);
+    const Term distance = distance_to_level(made->function, use.edge_mm / 8, use.region.bounds());
+    return abs(distance) - 0.5 * *made->wall_mm;
+  }
+  const auto level = made->share ? level_for(*made, *values, box, points) : std::optional(made->level);
   // How steep it is, in the cell's own coordinates.
   CellPoint own;
+  own.is_in_box = true;
   for (std::size_t i = 0; i < 3; ++i) {
     own.local[i] = Term::coordinate(i);
     own.global[i] = Term::constant(cell.global[i]);
   }
-  const double slope = FlatTerm(*body_at(cell, box, own)).lipschitz({box.corner, box.corner + box.size});
-  const Term scaled = slope > 0 && std::isfinite(slope) ? (1 / slope) * *given : *given;
+  const auto plain = plain_body(cell, box, own);
+  if (!level || !plain || report_.sink().error_count() > errors) return std::nullopt;
+  const double slope = FlatTerm(*plain).lipschitz({box.corner, box.corner + box.size});
+  const Term given = below(made->function, *level);
+  const Term scaled = slope > 0 && std::isfinite(slope) ? (1 / slope) * given : given;
   constexpr double far = 1e9;
   return outside_where_undefined(scaled, {{-far, -far, -far}, {far, far, far}});
 }
@@ -207,14 +200,14 @@ bool ImplicitCells::varies_by_point() const {
 }
 
 // A formula is asked at points of a few cells: what agrees at all of them repeats.
-bool ImplicitCells::repeats(const eval::PlacedCell& cell, const eval::BoxShape& box, std::size_t axis) const {
-  if (body_.surface) return true;
+bool ImplicitCells::repeats(const eval::PlacedCell& cell, const eval::BoxShape& box, std::size_t axis) {
+  if (body_.surface && body_.blends.empty()) return true;
   CellPoint point;
   for (std::size_t i = 0; i < 3; ++i) {
     point.local[i] = Term::coordinate(i);
     point.global[i] = Term::constant(cell.global[i]);
   }
-  const auto body = body_at(cell, box, point);
+  const auto body = plain_body(cell, box, point);
   if (!body) return false;
   const FlatTerm flat(*body);
   std::mt19937_64 random(20);

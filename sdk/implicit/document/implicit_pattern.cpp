@@ -9,12 +9,15 @@
 #include "cell_primitives.hpp"
 #include "coordinate_inverse.hpp"
 #include "meso/base/number.hpp"
+#include "point_terms.hpp"
 #include "volume_element.hpp"
 
 namespace meso::implicit {
 namespace {
 
 constexpr double tolerance = 1e-9;
+/// Where weights, densities and fields are looked at before a body is made, along each axis.
+constexpr std::int32_t points_in_block = 33, points_in_cell = 5;
 using Steps = std::array<std::int64_t, 3>;
 
 /// A cell that outlives the visit.
@@ -67,10 +70,14 @@ bool near(const Mat3& a, const Mat3& b) {
 class Maker {
  public:
   Maker(const eval::Evaluation& evaluation, const eval::CellStream& cells, const Reporter& report)
-      : cells_(cells), report_(report), bodies_(evaluation, cells, report) {}
+      : evaluation_(evaluation), cells_(cells), report_(report), bodies_(evaluation, cells, report) {}
 
   std::optional<PatternField> make(const KeepCell& keep, const RunOptions& run);
   std::optional<Field> one(const eval::PlacedCell& cell);
+  std::optional<Field> alone(const eval::PlacedCell& cell) {
+    kept_.emplace_back(cell);
+    return make_phases() ? one(cell) : std::nullopt;
+  }
 
  private:
   struct Block {
@@ -85,12 +92,16 @@ class Maker {
   bool repeats(const eval::PlacedCell& cell, const eval::BoxShape& box, const Block& block);
   std::optional<Field> repeated(const eval::BoxShape& box, const std::vector<Steps>& steps);
   std::optional<Field> cell_by_cell();
-  std::optional<Field> conformal_block(const eval::BoxShape& box, const Block& block);
+  std::optional<eval::VolumeElementShape> element_of_block(const Block& block);
+  std::optional<Field> scattered_boxes(const eval::BoxShape& box, const std::vector<Steps>& steps);
+  bool make_phases();
 
   /// The body in the world, not cut; the coordinates continue those of this cell over all of space.
-  std::optional<Term> rigid_body(const eval::PlacedCell& cell, const eval::BoxShape& box);
+  std::optional<Term> rigid_body(const eval::PlacedCell& cell, const eval::BoxShape& box, const Field& region,
+                                 std::int32_t points_along);
   std::optional<Term> conformal_body(const eval::PlacedCell& cell, const eval::BoxShape& box,
-                                     const eval::VolumeElementShape& around);
+                                     const eval::VolumeElementShape& around, const Field& region,
+                                     std::int32_t points_along);
   static Field rigid_box(const eval::BoxShape& box, const Steps& first, const Steps& last, const Affine& frame) {
     Vec3 size, corner = box.corner;
     for (std::size_t a = 0; a < 3; ++a) {
@@ -120,24 +131,28 @@ class Maker {
     return shortest;
   }
 
+  const eval::Evaluation& evaluation_;
   const eval::CellStream& cells_;
   const Reporter& report_;
   ImplicitCells bodies_;
   std::vector<KeptCell> kept_;
+  std::array<std::shared_ptr<const AxisPhase>, 3> phases_;  ///< of axes whose cells have a size from point to point
 };
 
-std::optional<Term> Maker::rigid_body(const eval::PlacedCell& cell, const eval::BoxShape& box) {
+std::optional<Term> Maker::rigid_body(const eval::PlacedCell& cell, const eval::BoxShape& box, const Field& region,
+                                      std::int32_t points_along) {
   const Affine local_from_world = inverse(cell.world_from_cell);
   CellPoint point;
   for (std::size_t i = 0; i < 3; ++i) {
     point.global[i] = Term::coordinate(i);
     point.local[i] = Term::coordinate(i).at(local_from_world);
   }
-  return bodies_.body(cell, box, point);
+  return bodies_.body(cell, box, point, {region, shortest_edge(cell, box), points_along});
 }
 
 std::optional<Term> Maker::conformal_body(const eval::PlacedCell& cell, const eval::BoxShape& box,
-                                          const eval::VolumeElementShape& around) {
+                                          const eval::VolumeElementShape& around, const Field& region,
+                                          std::int32_t points_along) {
   std::array<double, 3> middle{};
   for (std::size_t i = 0; i < 3; ++i) middle[i] = (around.from[i] + around.to[i]) / 2;
   const auto q = coordinates_of(*around.system, around.axes, middle);
@@ -145,24 +160,53 @@ std::optional<Term> Maker::conformal_body(const eval::PlacedCell& cell, const ev
   CellPoint point;
   for (std::size_t i = 0; i < 3; ++i) {
     point.global[i] = Term::coordinate(i);
+    if (phases_[i]) {
+      const Term phase = phase_term(phases_[i], (*q)[i].q) - std::round(phases_[i]->at(cell.q[i]));
+      point.local[i] = box.size[i] * phase - -box.corner[i];
+      continue;
+    }
     const double edge = box.size[i] / cell.step[i];
     point.local[i] = edge * (*q)[i].q - (edge * cell.q[i] - box.corner[i]);
   }
-  return bodies_.body(cell, box, point);
+  return bodies_.body(cell, box, point, {region, shortest_edge(cell, box), points_along});
+}
+
+/// Over what the kept cells take up.
+bool Maker::make_phases() {
+  const eval::PlacedCell cell = kept_.front().placed();
+  if (cell.mapping == CellMapping::rigid) return true;
+  const auto element = element_of(cell);
+  if (!element) return false;
+  for (std::size_t a = 0; a < 3; ++a) {
+    const eval::CoordinateAxis& axis = element->system->axes()[a];
+    const auto loop = std::ranges::find_if(
+        cells_.pattern().loops, [&](const Loop& l) { return l.size && l.axis && l.axis->text == axis.name; });
+    if (loop == cells_.pattern().loops.end()) continue;
+    double from = HUGE_VAL, to = -HUGE_VAL;
+    for (const KeptCell& kept : kept_) {
+      from = std::min(from, kept.q[a]);
+      to = std::max(to, kept.q[a] + kept.step[a]);
+    }
+    phases_[a] = bodies_.phase(*loop, axis.kind == AxisKind::circular, from, to);
+    if (!phases_[a]) return false;
+  }
+  return true;
 }
 
 std::optional<Field> Maker::one(const eval::PlacedCell& cell) {
   const auto box = box_of(cell);
   if (!box) return std::nullopt;
   if (cell.mapping == CellMapping::rigid) {
-    const auto body = rigid_body(cell, *box);
-    if (!body) return std::nullopt;
-    return intersection_of(Field::from_term(*body), rigid_box(*box, {}, {}, cell.world_from_cell));
+    const Field region = rigid_box(*box, {}, {}, cell.world_from_cell);
+    const auto body = rigid_body(cell, *box, region, points_in_cell);
+    return body ? std::optional(intersection_of(Field::from_term(*body), region)) : std::nullopt;
   }
   const auto element = element_of(cell);
-  const auto body = element ? conformal_body(cell, *box, *element) : std::nullopt;
-  const auto region = body ? volume_element(*element) : std::nullopt;
-  return region ? std::optional(intersection_of(Field::from_term(*body), *region)) : std::nullopt;
+  if (!element) return std::nullopt;
+  const auto region = volume_element(*element);
+  if (!region) return not_inverted();
+  const auto body = conformal_body(cell, *box, *element, *region, points_in_cell);
+  return body ? std::optional(intersection_of(Field::from_term(*body), *region)) : std::nullopt;
 }
 
 /// A lattice whose steps are edges of the box need not be visited, whatever the number of its cells.
@@ -191,9 +235,9 @@ std::optional<Field> Maker::lattice_at_once(const eval::CellStream::Lattice& lat
     if (!fits) return std::nullopt;
   }
   if (!repeats(cell, *box, block)) return std::nullopt;
-  const auto body = rigid_body(cell, *box);
-  if (!body) return std::nullopt;
-  return intersection_of(Field::from_term(*body), rigid_box(*box, block.first, block.last, cell.world_from_cell));
+  const Field region = rigid_box(*box, block.first, block.last, cell.world_from_cell);
+  const auto body = rigid_body(cell, *box, region, points_in_block);
+  return body ? std::optional(intersection_of(Field::from_term(*body), region)) : std::nullopt;
 }
 
 bool Maker::repeats(const eval::PlacedCell& cell, const eval::BoxShape& box, const Block& block) {
@@ -232,6 +276,10 @@ std::optional<std::vector<Steps>> Maker::steps_from_first(const eval::BoxShape& 
       for (std::size_t a = 0; a < 3; ++a) away[a] = d[a] / box.size[a];
     } else {
       for (std::size_t a = 0; a < 3; ++a) {
+        if (phases_[a]) {
+          away[a] = std::round(phases_[a]->at(cell.q[a])) - std::round(phases_[a]->at(first.q[a]));
+          continue;
+        }
         if (std::abs(cell.step[a] - first.step[a]) > tolerance * std::abs(first.step[a])) return std::nullopt;
         away[a] = (cell.q[a] - first.q[a]) / first.step[a];
       }
@@ -264,13 +312,21 @@ Maker::Block Maker::block_of(const std::vector<Steps>& steps) const {
   return block;
 }
 
-std::optional<Field> Maker::conformal_block(const eval::BoxShape& box, const Block& block) {
+/// The coordinates that the whole block takes up.
+std::optional<eval::VolumeElementShape> Maker::element_of_block(const Block& block) {
   const eval::PlacedCell cell = kept_.front().placed();
   auto element = element_of(cell);
   if (!element) return std::nullopt;
   for (std::size_t a = 0; a < 3; ++a) {
-    element->to[a] = element->from[a] + static_cast<double>(block.last[a] + 1) * cell.step[a];
-    element->from[a] += static_cast<double>(block.first[a]) * cell.step[a];
+    if (phases_[a]) {
+      for (const KeptCell& kept : kept_) {
+        element->from[a] = std::min(element->from[a], kept.q[a]);
+        element->to[a] = std::max(element->to[a], kept.q[a] + kept.step[a]);
+      }
+    } else {
+      element->to[a] = element->from[a] + static_cast<double>(block.last[a] + 1) * cell.step[a];
+      element->from[a] += static_cast<double>(block.first[a]) * cell.step[a];
+    }
     const double turn = 2 * std::numbers::pi;
     if (element->system->axes()[a].kind != AxisKind::circular || element->to[a] - element->from[a] <= turn * (1 + 1e-9))
       continue;
@@ -279,30 +335,12 @@ std::optional<Field> Maker::conformal_block(const eval::BoxShape& box, const Blo
         {element->system->axes()[a].name, format_number((element->to[a] - element->from[a]) * 180 / std::numbers::pi)});
     return std::nullopt;
   }
-  const auto body = conformal_body(cell, box, *element);
-  if (!body) return std::nullopt;
-  if (block.is_full) {
-    const auto region = volume_element(*element);
-    return region ? std::optional(intersection_of(Field::from_term(*body), *region)) : not_inverted();
-  }
-  return Field::from_term(*body);
+  return element;
 }
 
-std::optional<Field> Maker::repeated(const eval::BoxShape& box, const std::vector<Steps>& steps) {
-  const Block block = block_of(steps);
+/// Boxes here and there: what lies in any of them.
+std::optional<Field> Maker::scattered_boxes(const eval::BoxShape& box, const std::vector<Steps>& steps) {
   const eval::PlacedCell cell = kept_.front().placed();
-  if (!repeats(cell, box, block)) return std::nullopt;
-  std::optional<Field> body;
-  if (cell.mapping == CellMapping::rigid) {
-    const auto term = rigid_body(cell, box);
-    if (!term) return std::nullopt;
-    body = Field::from_term(*term);
-    if (block.is_full) return intersection_of(*body, rigid_box(box, block.first, block.last, cell.world_from_cell));
-  } else {
-    body = conformal_block(box, block);
-    if (!body || block.is_full) return body;
-  }
-  // Boxes here and there: what lies in any of them.
   std::vector<Primitive> boxes;
   for (std::size_t i = 0; i < kept_.size(); ++i) {
     if (cell.mapping == CellMapping::rigid) {
@@ -315,8 +353,23 @@ std::optional<Field> Maker::repeated(const eval::BoxShape& box, const std::vecto
     }
   }
   const double reach = std::min({box.size.x, box.size.y, box.size.z}) / 2;
-  return intersection_of(
-      *body, Field::external(std::make_shared<const PlacedCells>(PrimitiveIndex(std::move(boxes), {}), reach)));
+  return Field::external(std::make_shared<const PlacedCells>(PrimitiveIndex(std::move(boxes), {}), reach));
+}
+
+std::optional<Field> Maker::repeated(const eval::BoxShape& box, const std::vector<Steps>& steps) {
+  const Block block = block_of(steps);
+  const eval::PlacedCell cell = kept_.front().placed();
+  if (!repeats(cell, box, block)) return std::nullopt;
+  const bool is_rigid = cell.mapping == CellMapping::rigid;
+  const auto element = is_rigid ? std::nullopt : element_of_block(block);
+  if (!is_rigid && !element) return std::nullopt;
+  const auto region = !block.is_full ? scattered_boxes(box, steps)
+                      : is_rigid     ? rigid_box(box, block.first, block.last, cell.world_from_cell)
+                                     : volume_element(*element);
+  if (!region) return is_rigid ? std::nullopt : std::optional<Field>(not_inverted());
+  const auto body = is_rigid ? rigid_body(cell, box, *region, points_in_block)
+                             : conformal_body(cell, box, *element, *region, points_in_block);
+  return body ? std::optional(intersection_of(Field::from_term(*body), *region)) : std::nullopt;
 }
 
 std::optional<Field> Maker::cell_by_cell() {
@@ -344,6 +397,7 @@ std::optional<PatternField> Maker::make(const KeepCell& keep, const RunOptions& 
     if (!collect(keep, run)) return std::nullopt;
     result.kept = kept_.size();
     if (kept_.empty()) return result;
+    if (!make_phases()) return std::nullopt;
   }
   const auto box = box_of(kept_.front().placed());
   if (!box) return std::nullopt;
@@ -354,6 +408,7 @@ std::optional<PatternField> Maker::make(const KeepCell& keep, const RunOptions& 
     if (!field) field = cell_by_cell();
   }
   if (!field) return std::nullopt;
+  result.smallest_feature_mm = std::min(result.smallest_feature_mm, bodies_.thinnest_wall_mm());
   result.field = *field;
   return result;
 }
@@ -367,7 +422,7 @@ std::optional<PatternField> implicit_pattern(const eval::Evaluation& evaluation,
 
 std::optional<Field> implicit_cell(const eval::Evaluation& evaluation, const eval::CellStream& cells,
                                    const eval::PlacedCell& cell, const Reporter& report) {
-  return Maker(evaluation, cells, report).one(cell);
+  return Maker(evaluation, cells, report).alone(cell);
 }
 
 }  // namespace meso::implicit

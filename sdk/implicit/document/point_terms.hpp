@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// Functions of the point that no expression can say, as terms: a quantity of a vector field, the level that fills a
+// share, the distance to a level, the phase of cells that grow along an axis. Private.
+
+#include <memory>
+#include <vector>
+
+#include "density_table.hpp"
+#include "meso/eval/evaluation.hpp"
+#include "meso/implicit/field.hpp"
+
+namespace meso::implicit {
+
+/// The quantity at the world's point. Where it has no value (outside of its records) it is that of the nearest point of
+/// `region`; what the document calls an error there was looked for before.
+[[nodiscard]] Term quantity_term(eval::PointQuantity quantity, const Box3& region);
+
+/// table.level(share, at).
+[[nodiscard]] Term density_level(std::shared_ptr<const DensityTable> table, const Term& share, std::vector<Term> at);
+
+/// Signed distance to {f = 0}, negative where f is: the nearest point is found by Newton's steps along the gradient and
+/// slides along the surface until the way to it is perpendicular. Good within the radius of the surface's curvature;
+/// farther away it is some distance that is not too short by much. `step`: how far one step may go at most, a part of a
+/// cell; `region`: where it will be asked.
+[[nodiscard]] Term distance_to_level(const Term& f, double step, const Box3& region);
+
+/// The integral of 1 / size from `start` to the coordinate, for sizes that are a function of it. Beyond the range it
+/// goes on straight.
+class AxisPhase {
+ public:
+  /// `size`: a term of the coordinate x, in its unit.
+  AxisPhase(const Term& size, double start, double from, double to);
+  [[nodiscard]] double at(double q) const;
+  [[nodiscard]] Interval at(Interval q) const { return {at(q.lo), at(q.hi), q.undefined}; }
+
+ private:
+  double from_, spacing_;
+  std::vector<double> phase_, slope_;  ///< at equal steps
+};
+[[nodiscard]] Term phase_term(std::shared_ptr<const AxisPhase> phase, const Term& coordinate);
+
+}  // namespace meso::implicit
