@@ -34,8 +34,8 @@ struct ContourOptions {
   /// from the grid's nodes, lest rounding folds up the triangles around one. In the grid's unit; floats: the step of
   /// the largest coordinate.
   double coordinate_step = 0;
-  /// Edges and corners of the solid become edges and corners of the mesh (extended marching cubes, Kobbelt et al. 2001):
-  /// where surfaces meet in a cell at more than 25 degrees, a vertex stands where they meet. Polishes, too.
+  /// Edges and corners of the solid become edges and corners of the mesh (extended marching cubes, Kobbelt et al.
+  /// 2001): where surfaces meet in a cell at more than 25 degrees, a vertex stands where they meet. Polishes, too.
   bool sharp = false;
   /// Collapses edges shorter than a quarter of the spacing where neither the shape nor the box's planes suffer, which
   /// removes slivers. Holds the mesh in memory: about 120 bytes a triangle; 2 us each.

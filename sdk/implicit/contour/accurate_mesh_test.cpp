@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "meso/implicit/accurate_mesh.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "function_source_for_test.hpp"
+#include "meso/mesh/audit_mesh.hpp"
+
+namespace meso::implicit {
+namespace {
+
+using Function = FunctionSource::Function;
+
+constexpr double pi = std::numbers::pi;
+
+Box3 cube(double half = 1) { return {{-half, -half, -half}, {half, half, half}}; }
+
+SourceOn on(const Function& f) {
+  return [f](const Grid& grid) { return std::make_unique<FunctionSource>(grid, f); };
+}
+
+AccurateMesh made(const Function& f, const Grid& grid, const AccurateMeshOptions& options, const RunOptions& run = {}) {
+  DiagnosticSink diagnostics;
+  const auto result = make_accurate_mesh(on(f), grid, options, run, diagnostics);
+  EXPECT_TRUE(result);
+  for (const Diagnostic& d : diagnostics.diagnostics()) ADD_FAILURE() << static_cast<int>(d.code);
+  return result.value_or(AccurateMesh{});
+}
+
+/// The largest of a function over points spread over all triangles: an independent look at the distance.
+template <class Distance>
+double farthest(const TriangleMesh& mesh, Distance distance) {
+  double worst = 0;
+  for (const auto& t : mesh.triangles) {
+    const Vec3 a = mesh.points[t[0]], b = mesh.points[t[1]], c = mesh.points[t[2]];
+    for (int i = 0; i <= 6; ++i)
+      for (int j = 0; i + j <= 6; ++j) worst = std::max(worst, distance((i * a + j * b + (6 - i - j) * c) / 6));
+  }
+  return worst;
+}
+
+double ball(Vec3 p) { return norm(p) - 0.8; }
+/// Not a distance: steep here, flat there.
+double steep_ball(Vec3 p) { return (dot(p, p) - 0.64) * (2 + p.x) * 7; }
+double off_ball(Vec3 p) { return std::fabs(norm(p) - 0.8); }
+
+TEST(AccurateMesh, IsAsCloseToABallAsItIsAsked) {
+  std::size_t triangles = 0;
+  for (const double tolerance : {1e-2, 1e-3, 1e-4}) {
+    const AccurateMesh result = made(steep_ball, {.box = cube()}, {.tolerance = tolerance});
+    EXPECT_TRUE(audit_mesh(result.mesh).watertight());
+    const double worst = farthest(result.mesh, off_ball);
+    EXPECT_LE(worst, 1.1 * tolerance);
+    EXPECT_LE(result.distance, tolerance);
+    EXPECT_GE(result.distance, 0.7 * worst);  // not merely said
+    EXPECT_GT(result.mesh.triangles.size(), triangles);
+    triangles = result.mesh.triangles.size();
+  }
+  // A sphere takes about 4 pi r^2 / (3 sqrt(3) r tolerance) triangles of the best shape: this is not far from it.
+  EXPECT_LT(static_cast<double>(triangles), 12 * 4 * pi * 0.8 / (3 * std::sqrt(3) * 1e-4));
+}
+
+double drilled(Vec3 p) {
+  const Vec3 q = transposed(rotation(Vec3{1, 2, 3} / std::sqrt(14), 0.6)) * p;
+  return std::max({std::fabs(q.x) - 0.6, std::fabs(q.y) - 0.5, std::fabs(q.z) - 0.4, 0.25 - std::hypot(q.x, q.y)});
+}
+const double drilled_volume = 1.2 * 1.0 * 0.8 - 0.8 * pi * 0.25 * 0.25;
+
+TEST(AccurateMesh, KeepsEdgesWhileItRefines) {
+  const AccurateMesh result = made(drilled, {.box = cube()}, {.tolerance = 1e-4});
+  const MeshAudit audit = audit_mesh(result.mesh);
+  EXPECT_TRUE(audit.watertight());
+  EXPECT_EQ(result.euler, 0);  // one hole
+  EXPECT_NEAR(audit.volume, drilled_volume, 2 * pi * 0.25 * 0.8 * 1e-4 + 1e-5);
+  EXPECT_LE(farthest(result.mesh, [](Vec3 p) { return std::fabs(drilled(p)); }), 1.5e-4);
+}
+
+double gyroid(Vec3 p, double cell) {
+  const double t = 2 * pi / cell;
+  return std::cos(t * p.x) * std::sin(t * p.y) + std::cos(t * p.y) * std::sin(t * p.z) +
+         std::cos(t * p.z) * std::sin(t * p.x);
+}
+
+TEST(AccurateMesh, StaysInTheBoxsPlanes) {
+  const AccurateMesh result = made([](Vec3 p) { return gyroid(p, 1); }, {.box = cube()}, {.tolerance = 1e-3});
+  const MeshAudit audit = audit_mesh(result.mesh);
+  EXPECT_TRUE(audit.watertight());
+  EXPECT_EQ(audit.box, cube());
+  EXPECT_NEAR(audit.volume, 4.0, 1e-4);  // odd under inversion: half of the box
+  EXPECT_EQ(audit.degenerate, 0u);
+}
+
+TEST(AccurateMesh, SimplifiesABoxToItsCorners) {
+  const auto box = [](Vec3 p) {
+    return std::max({std::fabs(p.x) - 0.61, std::fabs(p.y) - 0.52, std::fabs(p.z) - 0.43});
+  };
+  const AccurateMesh result = made(box, {.box = cube(), .nodes = {40, 40, 40}}, {.simplify = 1e-4});
+  const MeshAudit audit = audit_mesh(result.mesh);
+  EXPECT_TRUE(audit.watertight());
+  EXPECT_NEAR(audit.volume, 8 * 0.61 * 0.52 * 0.43, 1e-3);
+  EXPECT_LT(audit.triangles, 200u);
+  EXPECT_LE(result.distance, 1e-4);
+}
+
+TEST(AccurateMesh, SimplifiesAsFarAsTheBoundGoes) {
+  const Grid grid{.box = cube(), .nodes = {60, 60, 60}};
+  std::size_t triangles = SIZE_MAX;
+  for (const double bound : {2e-3, 1e-2}) {
+    const AccurateMesh result = made(ball, grid, {.simplify = bound});
+    EXPECT_TRUE(audit_mesh(result.mesh).watertight());
+    EXPECT_LE(farthest(result.mesh, off_ball), 1.15 * bound);
+    EXPECT_LE(result.distance, bound);
+    EXPECT_LT(result.mesh.triangles.size(), triangles / 2);
+    triangles = result.mesh.triangles.size();
+  }
+  // Caps of the box stay in its planes.
+  const AccurateMesh clipped = made([](Vec3 p) { return gyroid(p, 1); }, grid, {.simplify = 1e-2});
+  EXPECT_TRUE(audit_mesh(clipped.mesh).watertight());
+  EXPECT_EQ(audit_mesh(clipped.mesh).box, cube());
+  EXPECT_NEAR(audit_mesh(clipped.mesh).volume, 4.0, 0.04);
+}
+
+TEST(AccurateMesh, IsTheSameForAnyNumberOfThreads) {
+  const AccurateMeshOptions options{.tolerance = 1e-3, .simplify = 2e-3};
+  const AccurateMesh one = made(drilled, {.box = cube()}, options, {.jobs = 1});
+  const AccurateMesh four = made(drilled, {.box = cube()}, options, {.jobs = 4});
+  EXPECT_EQ(one.mesh.points, four.mesh.points);
+  EXPECT_EQ(one.mesh.triangles, four.mesh.triangles);
+}
+
+TEST(AccurateMesh, SaysWhatATinyToleranceWouldTake) {
+  DiagnosticSink diagnostics;
+  EXPECT_FALSE(make_accurate_mesh(on(ball), {.box = cube()}, {.tolerance = 1e-9}, {}, diagnostics));
+  ASSERT_EQ(diagnostics.error_count(), 1u);
+  EXPECT_EQ(diagnostics.diagnostics()[0].code, Code::limit_tolerance);
+}
+
+TEST(AccurateMesh, SaysWhereItCannotBeReached) {
+  // Jumps: there is no surface between the values.
+  const auto jump = [](Vec3 p) { return p.x + 0.3 * p.y < 0.1 ? -1.0 : 1.0; };
+  DiagnosticSink diagnostics;
+  const auto result = make_accurate_mesh(on(jump), {.box = cube()}, {.tolerance = 1e-3}, {}, diagnostics);
+  ASSERT_TRUE(result);
+  EXPECT_TRUE(audit_mesh(result->mesh).watertight());
+}
+
+TEST(AccurateMesh, IsEmptyOutside) {
+  const AccurateMesh result = made([](Vec3) { return 1.0; }, {.box = cube()}, {.tolerance = 1e-2, .simplify = 1e-2});
+  EXPECT_TRUE(result.mesh.triangles.empty());
+}
+
+}  // namespace
+}  // namespace meso::implicit

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// A mesh as close to the surface of a field as is asked for, instead of from a given number of samples; and one of
+// fewer triangles that stays as close.
+//
+//   const auto on = [&](const Grid& grid) { return compile(term, grid, {}, run, diagnostics); };
+//   auto made = make_accurate_mesh(on, Grid{.box = box}, {.tolerance = 0.02}, run, diagnostics);
+//   made->distance <= 0.02
+//
+// Distances are measured: at vertices and in the middles of edges and triangles, along the field's gradient to where it
+// is zero. The grid has only to tell what is connected to what: it starts coarse and is made finer until nearly all of
+// the mesh is near the surface. What is still too far is refined on the surface itself, where edges are halved; that
+// keeps the mesh closed. `smallest_feature`, where it is known, says how coarse the first grid may be; what is thinner
+// than the grid's spacing and hits no sample is not seen.
+//
+// The mesh is held in memory: some 160 bytes a triangle. Same bytes for any number of threads.
+// Errors: those of contour(), and LIMIT_TOLERANCE with what it would take. Warning: TOLERANCE_NOT_REACHED.
+
+#include <functional>
+
+#include "meso/base/triangle_mesh.hpp"
+#include "meso/implicit/contour.hpp"
+
+namespace meso::implicit {
+
+struct AccurateMeshOptions {
+  double tolerance = 0;         ///< positive: chooses the grid; else the grid is the one that is given
+  double simplify = 0;          ///< positive: as few triangles as stay so close
+  double smallest_feature = 0;  ///< 0: not known
+  bool sharp = true;            ///< see ContourOptions
+};
+
+struct AccurateMesh {
+  TriangleMesh mesh;
+  Grid grid;
+  std::int64_t euler = 0;
+  double distance = 0;
+  std::uint64_t grid_samples = 0, surface_samples = 0;
+};
+
+/// Samples of the field on a grid; empty after a diagnostic.
+using SourceOn = std::function<std::unique_ptr<GridSource>(const Grid&)>;
+
+[[nodiscard]] std::optional<AccurateMesh> make_accurate_mesh(const SourceOn& source_on, const Grid& grid,
+                                                             const AccurateMeshOptions& options, const RunOptions& run,
+                                                             DiagnosticSink& diagnostics);
+
+}  // namespace meso::implicit

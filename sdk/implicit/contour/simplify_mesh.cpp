@@ -1,0 +1,262 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "simplify_mesh.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <iterator>
+#include <limits>
+#include <queue>
+#include <tuple>
+
+#include "plane_fit.hpp"
+#include "surface_feet.hpp"
+
+namespace meso::implicit {
+namespace {
+
+constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
+
+/// The weighted sum of squared distances to planes, seen from a point of the mesh: p' a p + 2 b p + c.
+struct Quadric {
+  std::array<double, 6> a{};  ///< xx xy xz yy yz zz
+  Vec3 b;
+  double c = 0, weight = 0;
+
+  void add_plane(Vec3 normal, double distance, double w) {
+    const std::array<double, 6> n{normal.x * normal.x, normal.x * normal.y, normal.x * normal.z,
+                                  normal.y * normal.y, normal.y * normal.z, normal.z * normal.z};
+    for (std::size_t i = 0; i < 6; ++i) a[i] += w * n[i];
+    b += w * distance * normal;
+    c += w * distance * distance;
+    weight += w;
+  }
+  Quadric& operator+=(const Quadric& q) {
+    for (std::size_t i = 0; i < 6; ++i) a[i] += q.a[i];
+    b += q.b;
+    c += q.c;
+    weight += q.weight;
+    return *this;
+  }
+  [[nodiscard]] Vec3 times(Vec3 p) const {
+    return {a[0] * p.x + a[1] * p.y + a[2] * p.z, a[1] * p.x + a[3] * p.y + a[4] * p.z,
+            a[2] * p.x + a[4] * p.y + a[5] * p.z};
+  }
+  /// The mean.
+  [[nodiscard]] double at(Vec3 p) const {
+    return weight > 0 ? std::max(0.0, dot(p, times(p)) + 2 * dot(b, p) + c) / weight : 0;
+  }
+  /// Where it is least, by Cramer's rule; nothing where that is not well defined.
+  [[nodiscard]] bool least(Vec3& p) const {
+    const Mat3 m{{a[0], a[1], a[2], a[1], a[3], a[4], a[2], a[4], a[5]}};
+    const double det = determinant(m);
+    if (!(det > 1e-4 * weight * weight * weight)) return false;
+    const Vec3 x = m.column(0), y = m.column(1), z = m.column(2);
+    p = Vec3{-dot(b, cross(y, z)), -dot(x, cross(b, z)), -dot(x, cross(y, b))} / det;
+    return true;
+  }
+};
+
+class Simplify {
+ public:
+  Simplify(TriangleMesh& mesh, const Box3& box, double bound)
+      : points_(mesh.points), triangles_(mesh.triangles), limit_(bound * bound / 4) {
+    eye_ = points_.empty() ? Vec3{} : points_[0];
+    for (const Vec3& p : points_) planes_.push_back(planes_of(box, p));
+  }
+
+  bool run(const RunOptions& run);
+
+ private:
+  struct Collapse {
+    double cost;
+    std::uint32_t a, b, version;
+    [[nodiscard]] auto key() const { return std::tie(cost, a, b, version); }
+    friend bool operator>(const Collapse& x, const Collapse& y) { return x.key() > y.key(); }
+  };
+
+  void link_corners();
+  void push(std::uint32_t a, std::uint32_t b);
+  [[nodiscard]] bool best_place(std::uint32_t a, std::uint32_t b, Vec3& place, double& cost) const;
+  [[nodiscard]] bool keeps_manifold(std::uint32_t a, std::uint32_t b);
+  [[nodiscard]] bool keeps_sides(std::uint32_t moved, std::uint32_t other, Vec3 place) const;
+  void collapse(std::uint32_t a, std::uint32_t b, Vec3 place);
+  void compact();
+  template <class Visit>
+  void visit_triangles(std::uint32_t point, Visit visit) const {
+    for (std::uint32_t c = head_[point]; c != none; c = next_[c])
+      if (triangles_[c / 3][0] != none) visit(c / 3);
+  }
+  void neighbours(std::uint32_t point, std::vector<std::uint32_t>& out) const;
+  [[nodiscard]] bool has(std::uint32_t triangle, std::uint32_t point) const {
+    const auto& t = triangles_[triangle];
+    return t[0] == point || t[1] == point || t[2] == point;
+  }
+
+  std::vector<Vec3>& points_;
+  std::vector<std::array<std::uint32_t, 3>>& triangles_;
+  double limit_;
+  Vec3 eye_;
+  std::vector<unsigned> planes_;
+  std::vector<Quadric> quadrics_;
+  std::vector<std::uint32_t> version_, head_, tail_, next_;
+  std::vector<std::uint32_t> near_a_, near_b_, common_;
+  std::priority_queue<Collapse, std::vector<Collapse>, std::greater<>> queue_;
+};
+
+void Simplify::link_corners() {
+  head_.assign(points_.size(), none);
+  tail_.assign(points_.size(), none);
+  next_.assign(3 * triangles_.size(), none);
+  for (std::uint32_t c = 0; c < next_.size(); ++c) {
+    const std::uint32_t p = triangles_[c / 3][c % 3];
+    (head_[p] == none ? head_[p] : next_[tail_[p]]) = c;
+    tail_[p] = c;
+  }
+}
+
+// A point on planes of the box moves onto one that is on them, too.
+bool Simplify::best_place(std::uint32_t a, std::uint32_t b, Vec3& place, double& cost) const {
+  Quadric sum = quadrics_[a];
+  sum += quadrics_[b];
+  const bool a_goes = (planes_[a] & ~planes_[b]) == 0, b_goes = (planes_[b] & ~planes_[a]) == 0;
+  cost = HUGE_VAL;
+  const auto consider = [&](Vec3 p) {
+    const double c = sum.at(p - eye_);
+    if (c < cost) cost = c, place = p;
+  };
+  if (a_goes) consider(points_[b]);
+  if (b_goes) consider(points_[a]);
+  if (planes_[a] == planes_[b]) consider((points_[a] + points_[b]) / 2);
+  Vec3 least;
+  if ((planes_[a] | planes_[b]) == 0 && sum.least(least)) {
+    const Vec3 middle = (points_[a] + points_[b]) / 2 - eye_;
+    if (norm(least - middle) <= 2 * norm(points_[a] - points_[b])) consider(least + eye_);
+  }
+  return cost <= limit_;
+}
+
+void Simplify::push(std::uint32_t a, std::uint32_t b) {
+  Vec3 place;
+  double cost = 0;
+  if (a > b) std::swap(a, b);
+  if (best_place(a, b, place, cost)) queue_.push({cost, a, b, version_[a] + version_[b]});
+}
+
+void Simplify::neighbours(std::uint32_t point, std::vector<std::uint32_t>& out) const {
+  out.clear();
+  visit_triangles(point, [&](std::uint32_t t) {
+    for (const std::uint32_t p : triangles_[t])
+      if (p != point) out.push_back(p);
+  });
+  std::sort(out.begin(), out.end());
+  out.erase(std::unique(out.begin(), out.end()), out.end());
+}
+
+// The link condition; and four triangles must be left over.
+bool Simplify::keeps_manifold(std::uint32_t a, std::uint32_t b) {
+  neighbours(a, near_a_);
+  neighbours(b, near_b_);
+  common_.clear();
+  std::set_intersection(near_a_.begin(), near_a_.end(), near_b_.begin(), near_b_.end(), std::back_inserter(common_));
+  if (common_.size() != 2 || near_a_.size() + near_b_.size() < 9) return false;
+  unsigned at_edge = 0;
+  visit_triangles(a, [&](std::uint32_t t) { at_edge += has(t, b) ? 1 : 0; });
+  return at_edge == 2;
+}
+
+// No triangle that is left turns by more than 60 degrees, or gets very narrow.
+bool Simplify::keeps_sides(std::uint32_t moved, std::uint32_t other, Vec3 place) const {
+  constexpr double narrow = 0.02;  // altitude over longest side
+  bool good = true;
+  visit_triangles(moved, [&](std::uint32_t t) {
+    if (!good || has(t, other)) return;
+    std::array<Vec3, 3> before, after;
+    for (std::size_t i = 0; i < 3; ++i) {
+      before[i] = points_[triangles_[t][i]];
+      after[i] = triangles_[t][i] == moved ? place : before[i];
+    }
+    const auto measure = [](const std::array<Vec3, 3>& c, double& quality) {
+      const Vec3 n = cross(c[1] - c[0], c[2] - c[0]);
+      double longest = 0;
+      for (std::size_t i = 0; i < 3; ++i) longest = std::max(longest, norm(c[(i + 1) % 3] - c[i]));
+      quality = norm(n) / (longest * longest);
+      return n;
+    };
+    double quality_before = 0, quality_after = 0;
+    const Vec3 n0 = measure(before, quality_before), n1 = measure(after, quality_after);
+    good = dot(n0, n1) > 0.5 * norm(n0) * norm(n1) && quality_after > std::min(narrow, quality_before);
+  });
+  return good;
+}
+
+void Simplify::collapse(std::uint32_t a, std::uint32_t b, Vec3 place) {
+  points_[a] = place;
+  planes_[a] |= planes_[b];
+  quadrics_[a] += quadrics_[b];
+  visit_triangles(b, [&](std::uint32_t t) {
+    if (has(t, a))
+      triangles_[t][0] = none;
+    else
+      std::replace(triangles_[t].begin(), triangles_[t].end(), b, a);
+  });
+  next_[tail_[a]] = head_[b];
+  tail_[a] = tail_[b];
+  head_[b] = none;
+  version_[a] += version_[b] + 1;
+  neighbours(a, near_a_);
+  for (const std::uint32_t n : near_a_) push(a, n);
+}
+
+bool Simplify::run(const RunOptions& run) {
+  link_corners();
+  quadrics_.resize(points_.size());
+  version_.assign(points_.size(), 0);
+  for (const auto& t : triangles_) {
+    const Vec3 a = points_[t[0]] - eye_, b = points_[t[1]] - eye_, c = points_[t[2]] - eye_;
+    const Vec3 n = cross(b - a, c - a);
+    const double twice_area = norm(n);
+    if (!(twice_area > 0)) continue;
+    for (const std::uint32_t p : t) quadrics_[p].add_plane(n / twice_area, -dot(n, a) / twice_area, twice_area);
+  }
+  for (const auto& t : triangles_)
+    for (std::size_t i = 0; i < 3; ++i)
+      if (t[i] < t[(i + 1) % 3]) push(t[i], t[(i + 1) % 3]);
+  for (std::size_t looked = 0; !queue_.empty(); ++looked) {
+    if (looked % 4096 == 0 && run.should_stop()) return false;
+    const Collapse next = queue_.top();
+    queue_.pop();
+    const std::uint32_t a = next.a, b = next.b;
+    if (head_[a] == none || head_[b] == none || next.version != version_[a] + version_[b]) continue;
+    Vec3 place;
+    double cost = 0;
+    if (!best_place(a, b, place, cost) || !keeps_manifold(a, b) || !keeps_sides(a, b, place) ||
+        !keeps_sides(b, a, place))
+      continue;
+    collapse(a, b, place);
+  }
+  compact();
+  return true;
+}
+
+void Simplify::compact() {
+  std::erase_if(triangles_, [](const auto& t) { return t[0] == none; });
+  std::vector<std::uint32_t>& number = tail_;
+  std::uint32_t kept = 0;
+  for (std::uint32_t p = 0; p < points_.size(); ++p) {
+    if (head_[p] == none) continue;
+    points_[kept] = points_[p];
+    number[p] = kept++;
+  }
+  points_.resize(kept);
+  for (auto& t : triangles_)
+    for (std::uint32_t& p : t) p = number[p];
+}
+
+}  // namespace
+
+bool simplify_mesh(TriangleMesh& mesh, const Box3& box, double bound, const RunOptions& run) {
+  return Simplify(mesh, box, bound).run(run);
+}
+
+}  // namespace meso::implicit

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// How far points are from the surface of a field, and where on the surface they belong: by its values alone.
+
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "meso/implicit/grid_source.hpp"
+
+namespace meso::implicit {
+
+/// A point near the surface. Bits of `planes`, as planes_of() has them: it may move in these planes of the box only.
+struct PointNearSurface {
+  Vec3 point;
+  unsigned planes = 0;
+  double slope = 0;  ///< about that of the field nearby; 0: not known
+};
+
+struct Foot {
+  Vec3 point;
+  double distance = 0;
+};
+
+/// On which sides of the box a point stands: bits 0, 1 are the two across x.
+[[nodiscard]] unsigned planes_of(const Box3& box, Vec3 p);
+
+/// One thread's.
+class SurfaceFeet {
+ public:
+  SurfaceFeet(const GridSource& source, std::function<bool()> go_on);
+
+  /// The feet of points. Where the distance is certainly less than `enough`, |f| / |grad f| is taken for it and the
+  /// point for its foot; elsewhere Newton's method along the gradient finds the foot to a hundredth of `enough`.
+  void feet(std::span<const PointNearSurface> points, double enough, std::vector<Foot>& out);
+  /// Slopes by differences, of a hundred-thousandth of a cell.
+  void slopes(std::span<const Vec3> points, std::vector<Vec3>& out, std::vector<double>& values);
+
+  /// Values that were asked for.
+  [[nodiscard]] std::uint64_t asked() const { return asked_; }
+
+ private:
+  void ask(std::span<const Vec3> points, std::vector<double>& out);
+
+  const Grid& grid_;
+  std::unique_ptr<GridSampler> sampler_;
+  std::function<bool()> go_on_;
+  std::uint64_t asked_ = 0;
+  std::vector<Vec3> around_, moving_, gradients_;
+  std::vector<double> around_values_, values_;
+};
+
+}  // namespace meso::implicit
