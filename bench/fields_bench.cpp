@@ -55,6 +55,13 @@ void nearest(benchmark::State& state) {
 }
 BENCHMARK(nearest)->ArgName("records")->Arg(100'000)->Arg(10'000'000);
 
+void tree_of_points(benchmark::State& state) {
+  const std::vector<Vec3> points = random_points(static_cast<std::size_t>(state.range(0)), 2);
+  for (auto _ : state) benchmark::DoNotOptimize(PointSearch::make(points, {}));
+  state.SetItemsProcessed(static_cast<std::int64_t>(state.iterations() * points.size()));
+}
+BENCHMARK(tree_of_points)->ArgName("records")->Arg(100'000)->Arg(10'000'000)->Unit(benchmark::kMillisecond);
+
 void thinning(benchmark::State& state) {
   const std::vector<Vec3> points = random_points(static_cast<std::size_t>(state.range(0)), 4);
   for (auto _ : state) benchmark::DoNotOptimize(thin(points, 0.01, {}));
@@ -138,13 +145,15 @@ void hdf5_plain(benchmark::State& state) {
   state.SetBytesProcessed(static_cast<std::int64_t>(state.iterations() * rows * columns * sizeof(double)));
   std::filesystem::remove(file);
 }
+// With a small budget the numbers go to a temporary file.
 void hdf5_ours(benchmark::State& state) {
   const std::string file = hdf5_file(state.range(0) != 0);
+  const std::uint64_t budget = static_cast<std::uint64_t>(state.range(1)) << 20;
   const double before = own_mebibytes();
   double most = before;
   for (auto _ : state) {
     DiagnosticSink sink;
-    const auto table = read_field_hdf5(file, "/records", {}, sink);
+    const auto table = read_field_hdf5(file, "/records", {.max_memory_bytes = budget}, sink);
     most = std::max(most, own_mebibytes());
     benchmark::DoNotOptimize(table);
   }
@@ -153,7 +162,10 @@ void hdf5_ours(benchmark::State& state) {
   std::filesystem::remove(file);
 }
 BENCHMARK(hdf5_plain)->ArgName("packed")->Arg(0)->Arg(1)->Unit(benchmark::kMillisecond);
-BENCHMARK(hdf5_ours)->ArgName("packed")->Arg(0)->Arg(1)->Unit(benchmark::kMillisecond);
+BENCHMARK(hdf5_ours)
+    ->ArgNames({"packed", "budget_MiB"})
+    ->ArgsProduct({{0, 1}, {4096, 64}})
+    ->Unit(benchmark::kMillisecond);
 #endif
 
 }  // namespace
