@@ -15,6 +15,9 @@ void print_grid(const operations::ConvertReport& r, const std::string& out) {
   fmt::print(stderr, "{}: {} bytes, {} triangles; {} x {} x {} samples, {:g} mm apart\n", out, r.bytes, r.triangles,
              r.grid_nodes[0], r.grid_nodes[1], r.grid_nodes[2], r.spacing_mm);
   if (r.cells.placed > 0) fmt::print(stderr, "cells: {} placed\n", r.cells.placed);
+  if (r.accuracy)
+    fmt::print(stderr, "within {:g} mm of the surface; {} samples of the field beside the grid's\n",
+               r.accuracy->distance, r.accuracy->surface_samples);
   if (r.mesh)
     fmt::print(stderr, "volume {:.6f} mm3, area {:.6f} mm2, {} in {} piece{}; ", r.mesh->volume, r.mesh->area,
                r.mesh->closed ? "closed" : "NOT CLOSED", r.mesh->components, r.mesh->components == 1 ? "" : "s");
@@ -52,6 +55,7 @@ Json report_json(const operations::ConvertReport& r, const std::string& in, cons
     j["grid"] = {{"nodes", r.grid_nodes}, {"spacing", r.spacing_mm}};
     j["cells"] = {{"placed", r.cells.placed}};
     j["triangles"] = r.triangles;
+    if (r.accuracy) j["accuracy"] = accuracy_json(*r.accuracy);
     if (r.mesh) {
       j["volume"] = r.mesh->volume;
       j["area"] = r.mesh->area;
@@ -100,8 +104,8 @@ std::optional<std::vector<double>> sample_counts(Run& run, const std::string& te
 
 /// Of this verb alone.
 struct ConvertFlags {
-  bool ascii = false, measure = false;
-  std::string spacing, samples;
+  bool ascii = false, measure = false, sharp = false;
+  std::string spacing, samples, tolerance, simplify;
 };
 
 int convert_verb(Run& run, const std::string& in, const std::string& out, const ConvertFlags& flags) {
@@ -118,8 +122,14 @@ int convert_verb(Run& run, const std::string& in, const std::string& out, const 
     if (!flags.spacing.empty()) run.usage_error("--spacing and --samples say the same twice");
     options->samples = sample_counts(run, flags.samples).value_or(std::vector<double>{});
   }
+  const auto length = [&](const std::string& text, const char* flag, std::optional<double>& to) {
+    if (options && !text.empty()) to = run.length_mm(text, LengthUnit::millimeter, flag);
+  };
+  if (options) length(flags.tolerance, "--tolerance", options->tolerance_mm);
+  if (options) length(flags.simplify, "--simplify", options->simplify_mm);
   if (!options || run.sink.has_errors()) return run.finish();
   options->measure = flags.measure;
+  options->sharp = flags.sharp;
   const auto report = operations::convert(
       in, out, *options, {.ascii = flags.ascii, .no_clobber = run.flags.no_clobber, .run = options->run}, run.sink);
   if (!report) return run.finish(Json{{"input", in}, {"output", out}});
@@ -140,6 +150,11 @@ void add_convert(CLI::App& app, Run& run) {
   verb->add_flag("--ascii", flags.ascii, "Text instead of binary STL");
   verb->add_option("--spacing", flags.spacing, "Implicit engine: distance of samples, e.g. 0.2mm");
   verb->add_option("--samples", flags.samples, "Implicit engine: number of samples, or three: 100^3, 50,60,200");
+  verb->add_flag("--sharp", flags.sharp, "Implicit engine: edges and corners of the solid are those of the mesh");
+  verb->add_option("--tolerance", flags.tolerance,
+                   "Implicit engine: largest distance of the mesh from the surface, e.g. 0.05mm; picks the samples");
+  verb->add_option("--simplify", flags.simplify,
+                   "Implicit engine: as few triangles as stay so close to the surface, e.g. 0.05mm");
   verb->add_flag("--measure", flags.measure, "Implicit engine: volume, area and pieces of the mesh");
   add_set_flag(*verb, run.flags);
   add_part_flag(*verb, run.flags);

@@ -6,6 +6,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 
+#include "make_options.hpp"
 #include "meso/base/number.hpp"
 #include "meso/implicit/surfaces.hpp"
 #include "meso/operations/sdf.hpp"
@@ -23,6 +24,12 @@ constexpr const char* description =
 /// The flags that are ours; everything else is a word.
 void add_flags(CLI::App& flags, Run& run, operations::SdfOptions& options) {
   flags.add_flag("--polish", options.polish, "Vertices on the surface itself, to 1e-6 of a grid spacing");
+  flags.add_flag("--sharp", options.sharp, "Edges and corners of the solid become edges and corners of the mesh");
+  flags
+      .add_option("--tolerance", options.tolerance, "Largest distance of the mesh from the surface; picks the samples")
+      ->check(CLI::PositiveNumber);
+  flags.add_option("--simplify", options.simplify, "As few triangles as stay so close to the surface")
+      ->check(CLI::PositiveNumber);
   flags.add_flag("--no-slivers", options.no_slivers, "Collapse very narrow triangles");
   flags.add_flag("--strict-math", options.strict_math, "Formulas as written, none regrouped");
   flags.add_flag("--double", options.double_coordinates, "Coordinates in double precision (not .stl)");
@@ -85,6 +92,7 @@ Json report_json(const operations::SdfReport& r, const std::string& out) {
   } else {
     j["extrapolated"] = nullptr;
   }
+  if (r.accuracy) j["accuracy"] = accuracy_json(*r.accuracy);
   j["triangles"] = r.triangles;
   j["vertices"] = r.points;
   j["components"] = m.components;
@@ -109,6 +117,9 @@ void print_summary(const operations::SdfReport& r, const std::string& out) {
              r.bytes);
   fmt::print(stderr, "{} x {} x {} samples: {:.3f} s reading, {:.3f} s contouring and writing\n", r.grid.nodes[0],
              r.grid.nodes[1], r.grid.nodes[2], r.seconds.read, r.seconds.contour);
+  if (r.accuracy)
+    fmt::print(stderr, "within {:g} of the surface; {} samples of the field beside the grid's\n", r.accuracy->distance,
+               r.accuracy->surface_samples);
 }
 
 /// The values of our flags, checked as on any other verb.
@@ -168,8 +179,11 @@ int sdf_verb(Run& run, const std::vector<std::string>& words) {
   if (run.sink.has_errors()) return run.finish(Json::object());
   if (!operations::check_volume_options(program->output, volume, run.sink)) return run.finish(Json::object());
   if (operations::is_volume_output(program->output)) {
-    if (options.polish || options.no_slivers || options.double_coordinates)
-      return run.usage_error("--polish, --no-slivers and --double have an effect on surfaces only"),
+    if (options.polish || options.no_slivers || options.double_coordinates || options.sharp || options.tolerance > 0 ||
+        options.simplify > 0)
+      return run.usage_error(
+                 "--polish, --sharp, --tolerance, --simplify, --no-slivers and --double have an effect on surfaces "
+                 "only"),
              run.finish(Json::object());
     volume.strict_math = options.strict_math;
     volume.ascii = options.ascii;

@@ -8,8 +8,11 @@
 #include "file_extension.hpp"
 #include "measured_mesh_sink.hpp"
 #include "mesh_grid.hpp"
+#include "meso/base/memory_mesh_sink.hpp"
+#include "meso/base/number.hpp"
 #include "meso/brep/read_step.hpp"
 #include "meso/export_mesh/mesh_writer.hpp"
+#include "meso/implicit/accurate_mesh.hpp"
 #include "meso/implicit/compile.hpp"
 #include "meso/implicit/contour.hpp"
 #include "meso/import_surface_mesh/read_surface_mesh.hpp"
@@ -65,26 +68,60 @@ std::optional<Built> build(const eval::Evaluation& evaluation, const MakeOptions
   return all;
 }
 
+/// Streams from the grid; or, from a tolerance or simplified, by way of a mesh in memory. Tells the report.
+bool stream_mesh(const Built& built, const implicit::Grid& grid, const MakeOptions& options, MeshSink& into,
+                 ConvertReport& report, DiagnosticSink& sink) {
+  const auto source_on = [&](const implicit::Grid& on) {
+    return implicit::compile(built.field.term(), on, {}, options.run, sink);
+  };
+  const auto tell = [&](const implicit::Grid& used, std::uint64_t triangles) {
+    report.grid_nodes = used.nodes;
+    report.spacing_mm = std::max({used.spacing(0), used.spacing(1), used.spacing(2)});
+    report.triangles = triangles;
+  };
+  if (!options.tolerance_mm && !options.simplify_mm) {
+    const auto source = implicit::check_grid(grid, options.run, sink) ? source_on(grid) : nullptr;
+    const auto contoured =
+        source ? implicit::contour(*source, into, {.sharp = options.sharp}, options.run, sink) : std::nullopt;
+    if (contoured) tell(grid, contoured->triangles);
+    return contoured.has_value();
+  }
+  const double feature = std::isfinite(built.smallest_feature_mm) ? built.smallest_feature_mm : 0;
+  const double tolerance = options.tolerance_mm.value_or(0);
+  const auto made = implicit::make_accurate_mesh(source_on, grid,
+                                                 {.tolerance = tolerance,
+                                                  .simplify = options.simplify_mm.value_or(0),
+                                                  .smallest_feature = feature,
+                                                  .sharp = options.sharp || options.tolerance_mm},
+                                                 options.run, sink);
+  if (!made) return false;
+  if (feature > 0 && feature < tolerance)
+    sink.report({.code = Code::feature_below_tolerance,
+                 .args = {built.names, format_number(feature) + " mm", format_number(tolerance) + " mm"}});
+  tell(made->grid, made->mesh.triangles.size());
+  report.accuracy = {
+      .distance = made->distance, .grid_samples = made->grid_samples, .surface_samples = made->surface_samples};
+  return write_mesh(made->mesh, into);
+}
+
 /// Into a file, measured on the way if that is asked for.
-bool write_mesh_file(const implicit::GridSource& source, const std::string& part_name, const fs::path& out,
-                     const MakeOptions& options, const WriteOptions& write, ConvertReport& report,
-                     DiagnosticSink& sink) {
+bool write_mesh_file(const Built& built, const implicit::Grid& grid, const fs::path& out, const MakeOptions& options,
+                     const WriteOptions& write, ConvertReport& report, DiagnosticSink& sink) {
   auto file = OutputFile::create(out.string(), write.no_clobber ? ExistingFile::refuse : ExistingFile::replace, sink);
   if (!file) return false;
   const MeshFormat format = *mesh_format_of(out.string());
   const auto writer = make_mesh_writer(write.ascii ? MeshFormat::stl_ascii : format, *file);
   MeasuredMeshSink<float> measured(*writer);
   const std::size_t errors = sink.error_count();
-  const auto contoured = implicit::contour(source, options.measure ? static_cast<MeshSink&>(measured) : *writer,
-                                           {.sharp = options.sharp}, options.run, sink);
-  if (contoured && contoured->triangles == 0) {  // what stands at `out` stays
-    sink.report({.code = Code::geometry_empty, .args = {part_name}});
+  const bool made =
+      stream_mesh(built, grid, options, options.measure ? static_cast<MeshSink&>(measured) : *writer, report, sink);
+  if (made && report.triangles == 0) {  // what stands at `out` stays
+    sink.report({.code = Code::geometry_empty, .args = {built.names}});
     return false;
   }
-  if (sink.error_count() > errors || !file->commit(sink) || !contoured) return false;
-  report.triangles = contoured->triangles;
-  const implicit::Grid& grid = source.grid();
-  if (options.measure) report.mesh = measured.measures(grid.spacing(0) * grid.spacing(1) * grid.spacing(2));
+  if (sink.error_count() > errors || !file->commit(sink) || !made) return false;
+  const double cell = report.spacing_mm * report.spacing_mm * report.spacing_mm;
+  if (options.measure) report.mesh = measured.measures(cell);
   std::error_code error;
   const auto bytes = fs::file_size(out, error);
   report.bytes = error ? 0 : bytes;
@@ -120,14 +157,10 @@ std::optional<ConvertReport> make_mesh(const eval::Evaluation& evaluation, const
     return std::nullopt;
   }
   const auto grid = mesh_grid(evaluation, options, bounds, built->smallest_feature_mm, sink);
-  if (!grid || !implicit::check_grid(*grid, options.run, sink)) return std::nullopt;
-  const auto source = implicit::compile(built->field.term(), *grid, {}, options.run, sink);
-  if (!source) return std::nullopt;
+  if (!grid) return std::nullopt;
   ConvertReport report{.engine = "implicit", .way = "field", .cells = built->cells, .closed = true};
-  report.grid_nodes = grid->nodes;
-  report.spacing_mm = std::max({grid->spacing(0), grid->spacing(1), grid->spacing(2)});
   report.seconds.realise = watch.lap();
-  if (!write_mesh_file(*source, built->names, out, options, write, report, sink)) return std::nullopt;
+  if (!write_mesh_file(*built, *grid, out, options, write, report, sink)) return std::nullopt;
   report.seconds.write = watch.lap();
   report.seconds.total = watch.total();
   return report;

@@ -10,8 +10,10 @@
 #include <type_traits>
 
 #include "measured_mesh_sink.hpp"
+#include "meso/base/memory_mesh_sink.hpp"
 #include "meso/base/number.hpp"
 #include "meso/export_mesh/mesh_writer.hpp"
+#include "meso/implicit/accurate_mesh.hpp"
 #include "meso/implicit/compile.hpp"
 #include "meso/implicit/contour.hpp"
 #include "meso/import_surface_mesh/read_surface_mesh.hpp"
@@ -109,6 +111,8 @@ class Job {
   bool write(const Output& output);
   template <class Real>
   bool contour_into(MeshSink& writer);
+  bool make_accurate(MeshSink& into);
+  [[nodiscard]] double smallest_feature() const;
   bool extrapolate();
   void warn(const Output& output) const;
   bool warn_of_rounding(const Output& output) const;
@@ -135,13 +139,45 @@ double float_step(const Box3& box) {
   return std::nextafter(static_cast<float>(reach), HUGE_VALF) - static_cast<float>(reach);
 }
 
+/// From a tolerance, or simplified: made in memory, then written.
+bool Job::make_accurate(MeshSink& into) {
+  const auto made =
+      implicit::make_accurate_mesh([this](const implicit::Grid& grid) { return source_on(grid); }, report_.grid,
+                                   {.tolerance = options_.tolerance,
+                                    .simplify = options_.simplify,
+                                    .smallest_feature = smallest_feature(),
+                                    .sharp = options_.sharp || options_.tolerance > 0},
+                                   options_.run, sink_);
+  if (!made) return false;
+  report_.grid = made->grid;
+  report_.points = made->mesh.points.size();
+  report_.triangles = made->mesh.triangles.size();
+  report_.euler = made->euler;
+  report_.accuracy = {
+      .distance = made->distance, .grid_samples = made->grid_samples, .surface_samples = made->surface_samples};
+  return write_mesh(made->mesh, into);
+}
+
+/// The thinnest wall that is known of; 0: none is.
+double Job::smallest_feature() const {
+  const auto wall = sdf::thinnest_wall(program_);
+  return wall ? wall->thickness : 0;
+}
+
 template <class Real>
 bool Job::contour_into(MeshSink& writer) {
+  MeasuredMeshSink<Real> measured(writer);
+  MeshSink& into = options_.measure ? static_cast<MeshSink&>(measured) : writer;
+  const auto take_measures = [&] {
+    const implicit::Grid& grid = report_.grid;
+    if (options_.measure) report_.measures = measured.measures(grid.spacing(0) * grid.spacing(1) * grid.spacing(2));
+    return true;
+  };
+  if (options_.tolerance > 0 || options_.simplify > 0) return make_accurate(into) && take_measures();
   const auto source = source_on(report_.grid);
   if (!source) return false;
-  MeasuredMeshSink<Real> measured(writer);
   const auto contoured =
-      implicit::contour(*source, options_.measure ? static_cast<MeshSink&>(measured) : writer,
+      implicit::contour(*source, into,
                         {.polish = options_.polish,
                          .coordinate_step = std::is_same_v<Real, float> ? float_step(report_.grid.box) : 0,
                          .sharp = options_.sharp,
@@ -151,9 +187,7 @@ bool Job::contour_into(MeshSink& writer) {
   report_.points = contoured->points;
   report_.triangles = contoured->triangles;
   report_.euler = contoured->euler;
-  const implicit::Grid& grid = report_.grid;
-  if (options_.measure) report_.measures = measured.measures(grid.spacing(0) * grid.spacing(1) * grid.spacing(2));
-  return true;
+  return take_measures();
 }
 
 /// Contours into a file; the file's own faults are told by commit().
@@ -202,6 +236,11 @@ void Job::warn(const Output& output) const {
   if (report_.triangles == 0) sink_.report({.code = Code::sdf_empty, .args = {program_.output}});
   const bool rounded = warn_of_rounding(output);
   const double spacing = largest_spacing(report_.grid);
+  if (const double feature = smallest_feature(); feature > 0 && feature < options_.tolerance) {
+    sink_.report({.code = Code::feature_below_tolerance,
+                  .args = {program_.output, format_number(feature), format_number(options_.tolerance)}});
+    return;
+  }
   if (const auto wall = sdf::thinnest_wall(program_); wall && wall->thickness < spacing) {
     const sdf::Word& word = wall->made_by->word;
     Diagnostic d{.code = Code::sdf_thin_wall,
@@ -247,7 +286,8 @@ std::optional<SdfReport> Job::run(const Output& output) {
   report_.seconds.read = watch.lap();
   if (!write(output)) return std::nullopt;
   report_.seconds.contour = watch.lap();
-  if (options_.measure && report_.triangles > 0 && !extrapolate()) return std::nullopt;
+  // Errors of refined meshes follow no law of the spacing.
+  if (options_.measure && report_.triangles > 0 && !report_.accuracy && !extrapolate()) return std::nullopt;
   report_.seconds.extrapolate = watch.lap();
   warn(output);
   report_.seconds.total = watch.total();

@@ -151,7 +151,7 @@ bool Making::to_tolerance(const Grid& first) {
 bool Making::simplify() {
   const TriangleMesh whole = std::move(out_.mesh);
   double bound = options_.simplify;
-  for (int attempt = 0; attempt < 6; ++attempt, bound *= 0.6) {
+  for (int attempt = 0; attempt < 6; ++attempt) {
     run_.report("simplifying", attempt / 6.0);
     TriangleMesh mesh = whole;
     if (!simplify_mesh(mesh, out_.grid.box, bound, run_)) return go_on();
@@ -160,6 +160,7 @@ bool Making::simplify() {
     out_.distance = refinable_->distance();
     out_.mesh = refinable_->take();
     if (out_.distance <= options_.simplify) return true;
+    bound *= std::clamp(0.95 * options_.simplify / out_.distance, 0.2, 0.9);
   }
   diagnostics_.report(
       {.code = Code::tolerance_not_reached, .args = {format_number(out_.distance), format_number(options_.simplify)}});
