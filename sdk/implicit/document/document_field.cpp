@@ -6,6 +6,7 @@
 
 #include "boundary_rule.hpp"
 #include "fragments.hpp"
+#include "meso/base/number.hpp"
 #include "meso/base/unit.hpp"
 #include "meso/eval/bounds.hpp"
 #include "meso/eval/pattern_reach.hpp"
@@ -54,23 +55,38 @@ class PartMaker {
 
   using Body = std::optional<Field>;  ///< nothing yet: the first step is a union (R-5.12.2)
 
-  static Field combined(const Body& body, const Field& operand, ApplyOperation operation) {
+  /// What of a step is measured in lengths.
+  struct Surroundings {
+    double radius = 0, skin = 0;
+  };
+  std::optional<Surroundings> surroundings(const Apply& apply) {
+    const auto radius = length(apply, "radius", apply.radius), skin = length(apply, "skin", apply.skin);
+    return radius && skin ? std::optional(Surroundings{*radius, *skin}) : std::nullopt;
+  }
+
+  static Field combined(const Body& body, const Field& operand, ApplyOperation operation, Surroundings around) {
     if (!body) return operand;
+    const auto [radius, skin] = around;
     switch (operation) {
       case ApplyOperation::union_:
-        return joined(*body, operand);
-      case ApplyOperation::intersection:
-        return intersection_of(*body, operand);
+        return radius > 0 ? union_of(*body, operand, radius) : joined(*body, operand);
+      case ApplyOperation::intersection: {
+        const Field fill = intersection_of(*body, operand, radius);
+        return skin > 0 ? union_of(fill, difference_of(*body, body->offset(-skin))) : fill;
+      }
       case ApplyOperation::difference:
         break;
     }
-    return difference_of(*body, operand.offset(seam));
+    const Field holes = skin > 0 ? intersection_of(operand.offset(seam), body->offset(-skin)) : operand.offset(seam);
+    return difference_of(*body, holes, radius);
   }
 
   std::optional<Field> with_part(const Body& body, const Apply& apply) {
     const auto placement = evaluation_.placement(apply.placement, report_.sink());
     const auto operand = placement ? make(*evaluation_.find_part(apply.part->text)) : std::nullopt;
-    return operand ? std::optional(combined(body, moved(*operand, *placement), apply.operation)) : std::nullopt;
+    const auto around = surroundings(apply);
+    if (!operand || !around) return std::nullopt;
+    return combined(body, moved(*operand, *placement), apply.operation, *around);
   }
 
   std::optional<Field> with_cells(const Body& body, const Part& part, const Apply& apply) {
@@ -80,7 +96,7 @@ class PartMaker {
     const BoundaryRule rule = apply.boundary.value_or(BoundaryRule::clip);
     KeepCell keep;
     if (rule != BoundaryRule::clip) {
-      const auto clearance = clearance_of(apply);
+      const auto clearance = length(apply, "clearance", apply.clearance);
       if (!clearance) return std::nullopt;
       const BoundaryQuestion question{rule == BoundaryRule::drop_partial, *clearance};
       const bool by_body = apply.test.value_or(InsideTest::box) == InsideTest::body;
@@ -88,14 +104,17 @@ class PartMaker {
         return keeps(*cells, cell, *body, question, by_body);
       };
     }
-    const auto pattern = field_of_pattern(evaluation_, *cells, keep, shapes_, options_.run, report_);
+    const auto around = surroundings(apply);
+    if (!around) return std::nullopt;
+    const auto pattern = field_of_pattern(evaluation_, *cells, keep, shapes_, around->radius, options_.run, report_);
     if (!pattern) return std::nullopt;
+    if (around->skin > 0) result_.smallest_feature_mm = std::min(result_.smallest_feature_mm, around->skin);
     result_.cells_placed += pattern->placed;
     result_.cells_kept += pattern->kept;
     result_.smallest_feature_mm = std::min(result_.smallest_feature_mm, pattern->smallest_feature_mm);
     // Whole cells stand for themselves.
     if (rule != BoundaryRule::clip && apply.operation == ApplyOperation::intersection) return pattern->field;
-    return combined(body, pattern->field, apply.operation);
+    return combined(body, pattern->field, apply.operation, *around);
   }
 
   /// a union makes no fragments, nor do whole cells.
@@ -119,10 +138,15 @@ class PartMaker {
     return difference_of(body, loose->pieces->offset(spacing / 2));
   }
 
-  std::optional<double> clearance_of(const Apply& apply) {
-    if (!apply.clearance) return 0.0;
-    const auto value = evaluation_.value(*apply.clearance, apply.id_in_source, "clearance", report_.sink());
+  /// In millimetres; 0 if the attribute is absent.
+  std::optional<double> length(const Apply& apply, std::string_view attribute, const std::optional<Expression>& given) {
+    if (!given) return 0.0;
+    const auto value = evaluation_.value(*given, apply.id_in_source, attribute, report_.sink());
     if (!value) return std::nullopt;
+    if (*value < 0) {
+      report_(Code::value_negative, apply.id_in_source, {std::string(attribute), format_number(*value)});
+      return std::nullopt;
+    }
     return *value * millimeters_per(evaluation_.document().unit);
   }
 

@@ -225,5 +225,45 @@ TEST(Gradings, AMirrorMakesTheSecondHalfOfTheCellTheFirst) {
   }
 }
 
+const char* const tee =
+    "<macrostructures><macrostructure id='m'><csg><box x='-10' y='-10' z='-2' dx='20' dy='20' dz='2'/></csg>"
+    "</macrostructure><macrostructure id='web'><csg><box x='-1' y='-5' z='-1' dx='2' dy='10' dz='9'/></csg>"
+    "</macrostructure></macrostructures>";
+
+TEST(Gradings, AUnionWithARadiusHasARoundFillet) {
+  const TestDocument document(
+      std::string(tee) +
+      "<parts><part id='w' macrostructure='web'/><part id='p' macrostructure='m'><apply part='w' operation='union' "
+      "radius='3'/></part></parts>");
+  // Beside the web's foot a circle of radius 3 about (4, 3) bounds the fillet.
+  for (double angle = 185; angle < 266; angle += 10) {
+    const double c = std::cos(angle * pi / 180), s = std::sin(angle * pi / 180);
+    EXPECT_GT(document.field().value({4 + 2.999 * c, 0, 3 + 2.999 * s}), 0) << angle;
+    EXPECT_LT(document.field().value({4 + 3.001 * c, 0, 3 + 3.001 * s}), 0) << angle;
+  }
+  EXPECT_GT(document.field().value({4.001, 0, 0.001}), 0);
+  EXPECT_LE(document.field().bounds().max.z, 8 + 1e-9 + 3 * (1 - std::numbers::sqrt2 / 2));
+}
+
+TEST(Gradings, AnIntersectionKeepsASkinOfItsThickness) {
+  const std::string pattern =
+      cells("<box dx='10' dy='10' dz='10'/><implicit field='1'/>", loops(2, 2, 2, 10));  // nothing at all
+  const TestDocument document(macrostructure("<box dx='20' dy='20' dz='20'/>") + pattern +
+                              part_of("<apply pattern='c' operation='intersection' skin='1.5'/>"));
+  EXPECT_NEAR(volume_by_points(document.field(), 80), 20 * 20 * 20 - 17 * 17 * 17, 60);
+  EXPECT_LT(document.field().value({10, 10, 1.499}), 0);
+  EXPECT_GT(document.field().value({10, 10, 1.501}), 0);
+}
+
+TEST(Gradings, ADifferenceLeavesASkinOfItsThickness) {
+  const std::string pattern =
+      cells("<box dx='10' dy='10' dz='10'/><implicit field='-1'/>", loops(2, 2, 2, 10));  // all of each box
+  const TestDocument document(macrostructure("<box dx='20' dy='20' dz='20'/>") + pattern +
+                              part_of("<apply pattern='c' operation='difference' skin='1.5'/>"));
+  EXPECT_NEAR(volume_by_points(document.field(), 80), 20 * 20 * 20 - 17 * 17 * 17, 60);
+  EXPECT_LT(document.field().value({10, 10, 1.499}), 0);
+  EXPECT_GT(document.field().value({10, 10, 1.501}), 0);
+}
+
 }  // namespace
 }  // namespace meso::implicit

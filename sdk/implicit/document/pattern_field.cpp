@@ -35,8 +35,8 @@ double reach_of(const Primitive& p) {
   return std::min({size.x, size.y, size.z}) / 2;
 }
 
-Field placed_cells(std::vector<Primitive> primitives, const std::optional<Repetition>& repetition) {
-  double reach = 0;
+/// Their values are distances up to `reach` at least.
+Field placed_cells(std::vector<Primitive> primitives, const std::optional<Repetition>& repetition, double reach = 0) {
   for (const Primitive& p : primitives) reach = std::max(reach, reach_of(p));
   if (primitives.empty()) return nothing();
   return Field::external(std::make_shared<const PlacedCells>(PrimitiveIndex(std::move(primitives), repetition), reach));
@@ -55,8 +55,8 @@ std::optional<Field> field_of_cell(const eval::Evaluation& evaluation, const eva
 }
 
 std::optional<PatternField> field_of_pattern(const eval::Evaluation& evaluation, const eval::CellStream& cells,
-                                             const KeepCell& keep, ShapeFields& shapes, const RunOptions& run,
-                                             const Reporter& report) {
+                                             const KeepCell& keep, ShapeFields& shapes, double reach,
+                                             const RunOptions& run, const Reporter& report) {
   if (is_implicit(cells)) return implicit_pattern(evaluation, cells, keep, run, report);
   CellPrimitives bodies(cells, shapes, report);
   PatternField result{nothing()};
@@ -86,7 +86,7 @@ std::optional<PatternField> field_of_pattern(const eval::Evaluation& evaluation,
   if (!visited || !good) return std::nullopt;
   if (repetition) result.kept = cells.size();
   result.smallest_feature_mm = bodies.smallest_feature_mm();
-  result.field = placed_cells(std::move(primitives), repetition);
+  result.field = placed_cells(std::move(primitives), repetition, reach);
   return result;
 }
 

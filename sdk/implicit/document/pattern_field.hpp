@@ -30,10 +30,11 @@ using KeepCell = std::function<std::optional<bool>(const eval::PlacedCell&)>;
                                                  const eval::PlacedCell& cell, ShapeFields& shapes,
                                                  const Reporter& report);
 
-/// `keep`: empty for all. Nothing if something was reported.
+/// `keep`: empty for all. `reach`: values are good that far from the cells, at least. Nothing if something was
+/// reported.
 [[nodiscard]] std::optional<PatternField> field_of_pattern(const eval::Evaluation& evaluation,
                                                            const eval::CellStream& cells, const KeepCell& keep,
-                                                           ShapeFields& shapes, const RunOptions& run,
+                                                           ShapeFields& shapes, double reach, const RunOptions& run,
                                                            const Reporter& report);
 
 }  // namespace meso::implicit

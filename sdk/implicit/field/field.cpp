@@ -260,6 +260,24 @@ Field union_of(const Field& a, const Field& b) { return Field(operation(Union{},
 Field intersection_of(const Field& a, const Field& b) { return Field(operation(Intersection{}, a.node_, b.node_)); }
 Field difference_of(const Field& a, const Field& b) { return intersection_of(a, b.complement()); }
 
+Field union_of(const Field& a, const Field& b, double radius) {
+  assert(radius >= 0);
+  if (radius == 0) return union_of(a, b);
+  const auto node = std::make_shared<Field::Node>();
+  node->kind = FilletedUnion{radius};
+  // Both may fall at once.
+  node->lipschitz = std::hypot(a.node_->lipschitz, b.node_->lipschitz);
+  node->a = a.node_;
+  node->b = b.node_;
+  return Field(node);
+}
+Field intersection_of(const Field& a, const Field& b, double radius) {
+  return radius == 0 ? intersection_of(a, b) : union_of(a.complement(), b.complement(), radius).complement();
+}
+Field difference_of(const Field& a, const Field& b, double radius) {
+  return radius == 0 ? difference_of(a, b) : union_of(a.complement(), b, radius).complement();
+}
+
 double Field::value(Vec3 p) const { return prepared(*node_).value(p); }
 void Field::values(std::span<const Vec3> points, std::span<double> out) const { prepared(*node_).values(points, out); }
 Vec3 Field::gradient(Vec3 p) const { return prepared(*node_).gradient(p); }

@@ -5,6 +5,7 @@
 #include <cassert>
 #include <cstdint>
 #include <cstring>
+#include <numbers>
 #include <unordered_map>
 #include <vector>
 
@@ -47,6 +48,11 @@ Term combined(const Node& node, const Term& a, const Term* b) {
   if (const auto* shell = std::get_if<Shell>(&node.kind)) return abs(a) - shell->half_thickness;
   if (std::holds_alternative<Complement>(node.kind)) return -a;
   if (std::holds_alternative<Union>(node.kind)) return min(a, *b);
+  if (const auto* fillet = std::get_if<FilletedUnion>(&node.kind)) {
+    const Term r = Term::constant(fillet->radius), zero = Term::constant(0);
+    const Term u = max(r - a, zero), v = max(r - *b, zero);
+    return max(r, min(a, *b)) - sqrt(u * u + v * v);
+  }
   assert(std::holds_alternative<Intersection>(node.kind));
   return max(a, *b);
 }
@@ -112,6 +118,13 @@ void ask_children(const Step& step, std::vector<Step>& open) {
     combine(sign > 0 ? Step::Kind::meet : Step::Kind::join);
     ask(node.a, 1, sign * m);
     ask(node.a, -1, sign * m);
+  } else if (const auto* fillet = std::get_if<FilletedUnion>(&node.kind)) {
+    // r - f is at most sqrt(2) times r less the smaller of the two, and f at most that.
+    const double r = fillet->radius;
+    const double of_either = sign > 0 && level < r ? r - (r - level) * std::numbers::sqrt2 / 2 : level;
+    combine(sign > 0 ? Step::Kind::join : Step::Kind::meet);
+    ask(node.a, sign, of_either);
+    ask(node.b, sign, of_either);
   } else {
     const bool narrow = std::holds_alternative<Intersection>(node.kind) == (sign > 0);
     combine(narrow ? Step::Kind::meet : Step::Kind::join);

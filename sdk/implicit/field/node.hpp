@@ -64,10 +64,13 @@ struct Complement {};
 // Operations on two.
 struct Union {};
 struct Intersection {};
+struct FilletedUnion {
+  double radius;
+};
 
 struct Field::Node {
   std::variant<Ball, Cuboid, Cylinder, Cone, Torus, Capsule, HalfSpace, LevelSet, External, Move, Offset, Shell,
-               Complement, Union, Intersection>
+               Complement, Union, Intersection, FilletedUnion>
       kind;
   double lipschitz = 1;
   std::shared_ptr<const Node> a{}, b{};

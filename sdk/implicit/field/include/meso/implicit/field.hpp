@@ -89,6 +89,9 @@ class Field {
   friend Field union_of(const Field& a, const Field& b);         ///< min(a, b)
   friend Field intersection_of(const Field& a, const Field& b);  ///< max(a, b)
   friend Field difference_of(const Field& a, const Field& b);    ///< max(a, -b)
+  /// With a fillet where the two surfaces meet: round of this radius if they are planes at right angles and distances.
+  /// max(r, min(a, b)) - |(max(r - a, 0), max(r - b, 0))|; 0 is the union without. REQUIRES: radius >= 0.
+  friend Field union_of(const Field& a, const Field& b, double radius);
 
   // Questions. The first one to a field prepares it, in time linear in its size.
   [[nodiscard]] double value(Vec3 p) const;
@@ -115,5 +118,9 @@ class Field {
 [[nodiscard]] Field union_of(const Field& a, const Field& b);
 [[nodiscard]] Field intersection_of(const Field& a, const Field& b);
 [[nodiscard]] Field difference_of(const Field& a, const Field& b);
+[[nodiscard]] Field union_of(const Field& a, const Field& b, double radius);
+/// The same of complements: edges of what is left are rounded.
+[[nodiscard]] Field intersection_of(const Field& a, const Field& b, double radius);
+[[nodiscard]] Field difference_of(const Field& a, const Field& b, double radius);
 
 }  // namespace meso::implicit
