@@ -5,8 +5,8 @@
 //   const auto part = field_of_part(*evaluation, *evaluation->find_part("lightBeam"), {.imports = read_mesh}, sink);
 //   const auto source = compile(part->field.term(), grid);
 //
-// Every body, pattern, mapping and rule of the document is understood, but for fields sampled at points and for
-// conformal mapping in coordinate systems whose inverse is not known here. Bodies that touch are joined: operands of
+// Every body, pattern, mapping and rule of the document is understood, but for conformal mapping in coordinate systems
+// whose inverse is not known here. Bodies that touch are joined: operands of
 // unions and cells grow by `seam` (R-5.12.7 decides boundaries no finer). Boundary rules look at the 16 x 16 x 16
 // parts of each cell that the left operand's boundary may cross.
 //
