@@ -7,10 +7,14 @@
 #include "field_names.hpp"
 #include "generator.hpp"
 #include "meso/base/number.hpp"
+#include "meso/fields/number_block.hpp"
 #include "meso/fields/point_search.hpp"
 
 namespace meso::eval {
 namespace {
+
+constexpr std::uint64_t bytes_per_sorted = 24;    // a key, a number, and half of one to merge
+constexpr std::uint64_t bytes_per_thinned = 144;  // numbers, a place, and the cube that holds it
 
 class ScatterCompiler {
  public:
@@ -40,6 +44,13 @@ class ScatterCompiler {
     return (done & poll_mask) == 0 && run().should_stop();
   }
 
+  bool has_room(std::uint64_t bytes_per_record, const ScatterRecords& records, const Place& place) const {
+    const std::uint64_t budget = run().max_memory_bytes;
+    if (records.source->records() * bytes_per_record <= budget - budget / fields::numbers_part) return true;
+    report_(Code::limit_memory, place, {std::to_string(budget >> 20) + " MiB"});
+    return false;
+  }
+
   /// A stable sort by merging sorted parts, with a look at the clock between two of them.
   template <class Before>
   bool sort(std::span<std::uint64_t> order, const Before& before) {
@@ -59,7 +70,7 @@ class ScatterCompiler {
     if (!scatter_.sort) return true;
     const Place place{scatter_.sort->id_in_source, "by"};
     const auto by = scope_.bind(scatter_.sort->by.text, place, program_.evaluation->unit(), report_);
-    if (!by) return false;
+    if (!by || !has_room(bytes_per_sorted, records, place)) return false;
     std::vector<double> keys(records.source->records());
     std::vector<double> slots = program_.slots;
     for (std::size_t r = 0; r < keys.size(); ++r) {
@@ -88,6 +99,7 @@ class ScatterCompiler {
       report_(Code::value_negative, place, {"distance", format_number(*distance)});
       return false;
     }
+    if (!has_room(bytes_per_thinned, records, place)) return false;
     fill_order(records);
     std::vector<Vec3> points;
     points.reserve(records.order.size());

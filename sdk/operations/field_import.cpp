@@ -67,6 +67,13 @@ bool is_finite(const fs::path& in, const FieldReport& report, DiagnosticSink& si
 }
 
 bool write_meso(const fields::Table& table, const fs::path& out, const FieldOptions& options, DiagnosticSink& sink) {
+  // Base64 in the document, and in the text that is written.
+  const std::uint64_t bytes =
+      sizeof(double) * (table.records.rows() * table.records.columns() + table.tetra.size() + table.hexa.size());
+  if (bytes > options.run.max_memory_bytes / 3) {
+    sink.report({.code = Code::limit_memory, .args = {std::to_string(options.run.max_memory_bytes >> 20) + " MiB"}});
+    return false;
+  }
   auto file = OutputFile::create(out.string(), options.existing, sink);
   if (!file) return false;
   (void)file->write(write_document(field_document(table, fields::column_name(out.stem().string()), options.unit)));
