@@ -160,7 +160,7 @@ bool Making::simplify() {
     out_.distance = refinable_->distance();
     out_.mesh = refinable_->take();
     if (out_.distance <= options_.simplify) return true;
-    bound *= std::clamp(0.95 * options_.simplify / out_.distance, 0.2, 0.9);
+    bound *= std::clamp(0.95 * options_.simplify / out_.distance, 0.2, 0.6);
   }
   diagnostics_.report(
       {.code = Code::tolerance_not_reached, .args = {format_number(out_.distance), format_number(options_.simplify)}});

@@ -106,9 +106,9 @@ TEST(AccurateMesh, SimplifiesABoxToItsCorners) {
 }
 
 TEST(AccurateMesh, SimplifiesAsFarAsTheBoundGoes) {
-  const Grid grid{.box = cube(), .nodes = {60, 60, 60}};
+  const Grid grid{.box = cube(), .nodes = {40, 40, 40}};
   std::size_t triangles = SIZE_MAX;
-  for (const double bound : {2e-3, 1e-2}) {
+  for (const double bound : {4e-3, 2e-2}) {
     const AccurateMesh result = made(ball, grid, {.simplify = bound});
     EXPECT_TRUE(audit_mesh(result.mesh).watertight());
     EXPECT_LE(farthest(result.mesh, off_ball), 1.15 * bound);

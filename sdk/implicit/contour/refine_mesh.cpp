@@ -15,16 +15,12 @@ constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
 
 RefinableMesh::RefinableMesh(TriangleMesh mesh, const Box3& box, SurfaceFeet& feet)
     : mesh_(std::move(mesh)), box_(box), feet_(feet), known_(mesh_.triangles.size()) {
-  take_slopes(0);
-}
-
-void RefinableMesh::take_slopes(std::size_t first) {
   std::vector<Vec3> slopes;
   std::vector<double> values;
-  feet_.slopes(std::span(mesh_.points).subspan(first), slopes, values);
+  feet_.slopes(mesh_.points, slopes, values);
   for (std::size_t i = 0; i < slopes.size(); ++i) {
     slopes_.push_back(norm(slopes[i]));
-    planes_.push_back(planes_of(box_, mesh_.points[first + i]));
+    planes_.push_back(planes_of(box_, mesh_.points[i]));
     const double distance = planes_.back() != 0 ? 0 : std::fabs(values[i]) / slopes_.back();
     distances_.push_back(static_cast<float>(std::isfinite(distance) ? distance : 0));
   }
@@ -39,7 +35,7 @@ void RefinableMesh::move_vertices(double tolerance) {
     which.push_back(i);
   }
   std::vector<Foot> feet;
-  feet_.feet(off, tolerance, feet);
+  feet_.feet(off, tolerance / 100, feet);
   for (std::size_t n = 0; n < which.size(); ++n) {
     if (feet[n].distance > 2 * static_cast<double>(distances_[which[n]])) continue;  // of another part of the surface
     mesh_.points[which[n]] = feet[n].point;
@@ -83,21 +79,22 @@ void RefinableMesh::measure_edges(double tolerance) {
     asked.push_back(middle_of(edges[e].a, edges[e].b));
     first_of_asked.push_back(e);
   }
-  std::vector<Foot> feet;
-  feet_.feet(asked, tolerance, feet);
-  for (std::size_t i = 0; i < feet.size(); ++i)
+  std::vector<double> distances;
+  feet_.distances(asked, tolerance, distances);
+  for (std::size_t i = 0; i < distances.size(); ++i)
     for (std::size_t e = first_of_asked[i]; e < first_of_asked[i] + 2; ++e)
-      known_[edges[e].triangle].edge[edges[e].side] = static_cast<float>(feet[i].distance);
+      known_[edges[e].triangle].edge[edges[e].side] = static_cast<float>(distances[i]);
 }
 
-// Where an edge is to be halved, the middle will be another one.
+// Where an edge is to be halved, the middle will be another one. Of a curved triangle, the middle is 4/9 of the sum of
+// the edges' distances away: less than half of the tolerance where these are less than a third.
 void RefinableMesh::measure_middles(double tolerance) {
   std::vector<PointNearSurface> asked;
   std::vector<std::uint32_t> triangles;
   for (std::uint32_t t = 0; t < known_.size(); ++t) {
     const auto& edge = known_[t].edge;
     if (known_[t].middle >= 0 || std::max({edge[0], edge[1], edge[2]}) > tolerance) continue;
-    if (plane_of_triangle(t) != 0) {
+    if (plane_of_triangle(t) != 0 || edge[0] + edge[1] + edge[2] < tolerance) {
       known_[t].middle = 0;
       continue;
     }
@@ -106,9 +103,9 @@ void RefinableMesh::measure_middles(double tolerance) {
         {(mesh_.points[a] + mesh_.points[b] + mesh_.points[c]) / 3, 0, std::min({slopes_[a], slopes_[b], slopes_[c]})});
     triangles.push_back(t);
   }
-  std::vector<Foot> feet;
-  feet_.feet(asked, tolerance, feet);
-  for (std::size_t i = 0; i < feet.size(); ++i) known_[triangles[i]].middle = static_cast<float>(feet[i].distance);
+  std::vector<double> distances;
+  feet_.distances(asked, tolerance, distances);
+  for (std::size_t i = 0; i < distances.size(); ++i) known_[triangles[i]].middle = static_cast<float>(distances[i]);
 }
 
 std::size_t RefinableMesh::refine(double tolerance) {
@@ -138,14 +135,16 @@ std::size_t RefinableMesh::refine(double tolerance) {
     middles.back().slope = 0;
   }
   std::vector<Foot> feet;
-  feet_.feet(middles, tolerance, feet);
+  feet_.feet(middles, tolerance / 20, feet);
   const auto first = static_cast<std::uint32_t>(mesh_.points.size());
   for (std::size_t i = 0; i < edges.size(); ++i) {
     // A foot that is far away belongs to another part of the surface.
     const bool near = feet[i].distance < 0.5 * length(edges[i].a, edges[i].b);
     mesh_.points.push_back(near ? feet[i].point : middles[i].point);
+    planes_.push_back(planes_of(box_, mesh_.points.back()));
+    slopes_.push_back(feet[i].slope);
+    distances_.push_back(0);
   }
-  take_slopes(first);
   const auto count = static_cast<std::uint32_t>(known_.size());
   for (std::uint32_t t = 0; t < count; ++t) {
     std::array<std::uint32_t, 3> halved{none, none, none};

@@ -49,7 +49,6 @@ class RefinableMesh {
     friend auto operator<=>(const Edge&, const Edge&) = default;
   };
 
-  void take_slopes(std::size_t first);
   void measure_edges(double tolerance);
   void measure_middles(double tolerance);
   [[nodiscard]] unsigned plane_of_triangle(std::uint32_t triangle) const;

@@ -56,38 +56,67 @@ void SurfaceFeet::slopes(std::span<const Vec3> points, std::vector<Vec3>& out, s
   }
 }
 
-void SurfaceFeet::feet(std::span<const PointNearSurface> points, double enough, std::vector<Foot>& out) {
+void SurfaceFeet::distances(std::span<const PointNearSurface> points, double limit, std::vector<double>& out) {
   constexpr double certainly = 0.7;  // slopes nearby tell the distance to within a third
   moving_.clear();
   for (const PointNearSurface& p : points) moving_.push_back(p.point);
   ask(moving_, values_);
   out.resize(points.size());
-  std::vector<std::size_t> open;
+  std::vector<PointNearSurface> open;
+  std::vector<std::size_t> place;
   for (std::size_t i = 0; i < points.size(); ++i) {
-    const double distance = std::fabs(values_[i]) / points[i].slope;
-    out[i] = {points[i].point, distance};
-    if (!(distance <= certainly * enough)) open.push_back(i);
+    out[i] = std::fabs(values_[i]) / points[i].slope;
+    if (out[i] <= certainly * limit || (out[i] > limit / certainly && std::isfinite(out[i]))) continue;
+    open.push_back(points[i]);
+    place.push_back(i);
   }
+  std::vector<Foot> found;
+  feet(open, 0.01 * limit, found);
+  for (std::size_t n = 0; n < found.size(); ++n) out[place[n]] = found[n].distance;
+}
+
+void SurfaceFeet::feet(std::span<const PointNearSurface> points, double accuracy, std::vector<Foot>& out) {
+  out.resize(points.size());
+  std::vector<Vec3> gradient(points.size()), found_slopes;
+  std::vector<double> before(points.size(), HUGE_VAL), found_values;
+  std::vector<std::size_t> open(points.size()), sloping, plain;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    open[i] = i;
+    out[i].point = points[i].point;
+  }
+  std::vector<double> value(points.size());
   for (int step = 0; step < most_steps && !open.empty() && go_on_(); ++step) {
+    // The value here; and the slope, where the last one has not cut the value down to a quarter.
     moving_.clear();
     for (const std::size_t i : open) moving_.push_back(out[i].point);
-    slopes(moving_, gradients_, values_);
-    std::size_t kept = 0;
-    for (std::size_t n = 0; n < open.size(); ++n) {
-      const std::size_t i = open[n];
-      const Vec3 gradient = within(points[i].planes, gradients_[n]);
-      const double slope = norm(gradient), remains = std::fabs(values_[n]) / slope;
-      if (!std::isfinite(remains) || slope == 0) {  // no telling: as far as it came
-        out[i].distance = norm(out[i].point - points[i].point);
-        continue;
+    if (step == 0) {
+      sloping = open;
+    } else {
+      ask(moving_, values_);
+      sloping.clear();
+      moving_.clear();
+      for (std::size_t n = 0; n < open.size(); ++n) {
+        const std::size_t i = open[n];
+        value[i] = values_[n];
+        if (!(std::fabs(value[i]) < before[i] / 4)) sloping.push_back(i), moving_.push_back(out[i].point);
       }
-      Vec3 next = out[i].point - values_[n] / (slope * slope) * gradient;
+    }
+    slopes(moving_, found_slopes, found_values);
+    for (std::size_t n = 0; n < sloping.size(); ++n) {
+      gradient[sloping[n]] = within(points[sloping[n]].planes, found_slopes[n]);
+      value[sloping[n]] = found_values[n];
+    }
+    std::erase_if(open, [&](std::size_t i) {
+      const double slope = norm(gradient[i]), remains = std::fabs(value[i]) / slope;
+      Foot& foot = out[i];
+      if (!std::isfinite(remains)) return true;  // no telling: as far as it came
+      before[i] = std::fabs(value[i]);
+      Vec3 next = foot.point - value[i] / (slope * slope) * gradient[i];
       for (std::size_t axis = 0; axis < 3; ++axis)
         next[axis] = std::clamp(next[axis], grid_.box.min[axis], grid_.box.max[axis]);
-      out[i] = {next, norm(next - points[i].point)};
-      if (remains > 0.01 * enough) open[kept++] = i;
-    }
-    open.resize(kept);
+      foot = {next, norm(next - points[i].point), slope};
+      return remains <= accuracy;
+    });
   }
 }
 

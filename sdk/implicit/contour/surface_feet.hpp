@@ -20,6 +20,7 @@ struct PointNearSurface {
 struct Foot {
   Vec3 point;
   double distance = 0;
+  double slope = 0;  ///< of the field at the point or beside it
 };
 
 /// On which sides of the box a point stands: bits 0, 1 are the two across x.
@@ -30,9 +31,12 @@ class SurfaceFeet {
  public:
   SurfaceFeet(const GridSource& source, std::function<bool()> go_on);
 
-  /// The feet of points. Where the distance is certainly less than `enough`, |f| / |grad f| is taken for it and the
-  /// point for its foot; elsewhere Newton's method along the gradient finds the foot to a hundredth of `enough`.
-  void feet(std::span<const PointNearSurface> points, double enough, std::vector<Foot>& out);
+  /// How far points are: |f| / |grad f| where that is certainly less or certainly more than `limit`, elsewhere by
+  /// feet().
+  void distances(std::span<const PointNearSurface> points, double limit, std::vector<double>& out);
+  /// The feet of points to within `accuracy`, by Newton's method along the gradient. It is taken anew where it has not
+  /// brought the point much closer.
+  void feet(std::span<const PointNearSurface> points, double accuracy, std::vector<Foot>& out);
   /// Slopes by differences, of a hundred-thousandth of a cell.
   void slopes(std::span<const Vec3> points, std::vector<Vec3>& out, std::vector<double>& values);
 
@@ -46,7 +50,7 @@ class SurfaceFeet {
   std::unique_ptr<GridSampler> sampler_;
   std::function<bool()> go_on_;
   std::uint64_t asked_ = 0;
-  std::vector<Vec3> around_, moving_, gradients_;
+  std::vector<Vec3> around_, moving_, some_;
   std::vector<double> around_values_, values_;
 };
 
