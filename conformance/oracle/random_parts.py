@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Random parts that `meso verify --deep` must pass: many small documents, and the smallest that fails.
 
-usage: random_parts.py --meso PATH [--count 40] [--seed 1] [--kind NAME] [--keep FOLDER] [--jobs 1]
+usage: random_parts.py --meso PATH [--count 40 | --quick] [--seed 1] [--kind NAME] [--keep FOLDER] [--jobs 1]
 
 Documents are those of membership.py and more: lattices offset from and turned against bodies, graded ones, imported
 bodies. `meso` realises each and judges it by its own evaluator of the definitions, which shares no code with the engine.
@@ -294,6 +294,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("--meso", required=True)
     parser.add_argument("--count", type=int, default=40, help="documents in all")
+    parser.add_argument("--quick", action="store_true", help="one document of each kind, few points, a few seconds of a processor for each")
     parser.add_argument("--seed", type=int, default=1, help="of the first document")
     parser.add_argument("--points", type=int, default=60000, help="random points for each")
     parser.add_argument("--seconds", type=int, default=60, help="of a processor, for each run of meso")
@@ -303,8 +304,10 @@ def main():
     parser.add_argument("--keep", help="a folder for the documents")
     parser.add_argument("--verbose", action="store_true")
     a = parser.parse_args()
-    judge = Judge(a.meso, a.points, a.seconds)
     kinds = a.kind or list(KINDS)
+    if a.quick:
+        a.count, a.points, a.seconds, a.refusals = len(kinds), 20000, 12, 0.5
+    judge = Judge(a.meso, a.points, a.seconds)
     total, reasons = collections.defaultdict(collections.Counter), collections.defaultdict(collections.Counter)
     with tempfile.TemporaryDirectory() as temporary, concurrent.futures.ThreadPoolExecutor(a.jobs) as pool:
         parent = pathlib.Path(a.keep or temporary)

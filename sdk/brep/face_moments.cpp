@@ -5,6 +5,7 @@
 #include <BndLib_Add3dCurve.hxx>
 #include <Geom2dAdaptor_Curve.hxx>
 #include <Geom2d_Curve.hxx>
+#include <GeomAdaptor_Curve.hxx>
 #include <algorithm>
 #include <numbers>
 
@@ -72,6 +73,95 @@ std::vector<double> u_breaks(const GeomAdaptor_Surface& surface, double u_min, d
   return fine;
 }
 
+/// Where an edge runs in the parameters of a face. Of planes, quadrics and tori it is the curve in space that tells,
+/// the pcurve only which turn around the axis is meant: pcurves that OpenCASCADE's reader has made are approximations,
+/// and those of two faces that share an edge leave a gap between them. Of other surfaces it is the pcurve.
+class EdgeOnSurface {
+ public:
+  EdgeOnSurface(const TopoDS_Edge& edge, const TopoDS_Face& forward, const GeomAdaptor_Surface& surface)
+      : type_(surface.GetType()) {
+    double first = 0, last = 0;
+    const Handle(Geom2d_Curve) pcurve = BRep_Tool::CurveOnSurface(edge, forward, first, last);
+    if (pcurve.IsNull()) return;
+    pcurve_.Load(pcurve, first, last);
+    is_on_face_ = true;
+    double begin = 0, end = 0;
+    const Handle(Geom_Curve) curve = BRep_Tool::Curve(edge, begin, end);
+    const double rounding = 1e-9 * (last - first);
+    if (curve.IsNull() || std::abs(begin - first) > rounding || std::abs(end - last) > rounding || !set_frame(surface))
+      return;
+    curve_.Load(curve, first, last);
+    has_curve_ = true;
+  }
+  [[nodiscard]] bool is_on_face() const { return is_on_face_; }
+
+  [[nodiscard]] std::vector<double> spans() const {
+    const Standard_Integer count = has_curve_ ? curve_.NbIntervals(GeomAbs_CN) : pcurve_.NbIntervals(GeomAbs_CN);
+    TColStd_Array1OfReal knots(1, count + 1);
+    has_curve_ ? curve_.Intervals(knots, GeomAbs_CN) : pcurve_.Intervals(knots, GeomAbs_CN);
+    return {knots.begin(), knots.end()};
+  }
+
+  struct Point {
+    double u = 0, v = 0;
+    double dv = 0;  ///< by the curve's parameter
+  };
+  [[nodiscard]] Point operator()(double t) const {
+    gp_Pnt2d uv;
+    gp_Vec2d tangent;
+    pcurve_.D1(t, uv, tangent);
+    if (!has_curve_) return {uv.X(), uv.Y(), tangent.Y()};
+    gp_Pnt p;
+    gp_Vec d;
+    curve_.D1(t, p, d);
+    const gp_XYZ at = p.XYZ() - frame_.Location().XYZ();
+    const double x = at * frame_.XDirection().XYZ(), y = at * frame_.YDirection().XYZ(),
+                 z = at * frame_.Direction().XYZ();
+    const double dx = d.XYZ() * frame_.XDirection().XYZ(), dy = d.XYZ() * frame_.YDirection().XYZ(),
+                 dz = d.XYZ() * frame_.Direction().XYZ();
+    if (type_ == GeomAbs_Plane) return {x, y, dy};
+    const double u = same_turn(std::atan2(y, x), uv.X());
+    if (type_ == GeomAbs_Cylinder) return {u, z, dz};
+    if (type_ == GeomAbs_Cone) return {u, z / cosine_, dz / cosine_};
+    const double off = std::hypot(x, y), across = off - ring_;  // of the section's centre, a torus' ring
+    const double doff = off > 0 ? (x * dx + y * dy) / off : 0;
+    const double square = across * across + z * z;
+    if (square == 0) return {uv.X(), uv.Y(), tangent.Y()};
+    return {u, same_turn(std::atan2(z, across), uv.Y()), (across * dz - z * doff) / square};
+  }
+
+ private:
+  bool set_frame(const GeomAdaptor_Surface& surface) {
+    switch (type_) {
+      case GeomAbs_Plane:
+        return frame_ = surface.Plane().Position(), true;
+      case GeomAbs_Cylinder:
+        return frame_ = surface.Cylinder().Position(), true;
+      case GeomAbs_Cone:
+        cosine_ = std::cos(surface.Cone().SemiAngle());
+        return frame_ = surface.Cone().Position(), true;
+      case GeomAbs_Sphere:
+        return frame_ = surface.Sphere().Position(), true;
+      case GeomAbs_Torus:
+        ring_ = surface.Torus().MajorRadius();
+        return frame_ = surface.Torus().Position(), ring_ > surface.Torus().MinorRadius();
+      default:
+        return false;
+    }
+  }
+  static double same_turn(double angle, double like) {
+    constexpr double turn = 2 * std::numbers::pi;
+    return angle + turn * std::round((like - angle) / turn);
+  }
+
+  GeomAbs_SurfaceType type_;
+  Geom2dAdaptor_Curve pcurve_;
+  GeomAdaptor_Curve curve_;
+  bool is_on_face_ = false, has_curve_ = false;
+  gp_Ax3 frame_;
+  double cosine_ = 1, ring_ = 0;
+};
+
 // Green's theorem in parameter space: the integral of f over the face is that of F dv around its boundary, F the
 // integral of f from u_min to u.
 class BoundaryIntegral {
@@ -82,6 +172,7 @@ class BoundaryIntegral {
     breaks_ = u_breaks(surface_, u_min, u_max);
     for (const double u : {u_min, (u_min + u_max) / 2, u_max})
       for (const double v : {v_min, v_max}) reach_ = std::max(reach_, surface_.Value(u, v).XYZ().Modulus());
+    patch_ = std::abs(v_max - v_min) * integrate_u(u_max, (v_min + v_max) / 2)[0];
     for (TopExp_Explorer it(face.Oriented(TopAbs_FORWARD), TopAbs_EDGE); it.More(); it.Next())
       add_edge(TopoDS::Edge(it.Current()), face);
   }
@@ -89,39 +180,29 @@ class BoundaryIntegral {
 
  private:
   void add_edge(const TopoDS_Edge& edge, const TopoDS_Face& face) {
-    double first = 0, last = 0;
-    const Handle(Geom2d_Curve) pcurve =
-        BRep_Tool::CurveOnSurface(edge, TopoDS::Face(face.Oriented(TopAbs_FORWARD)), first, last);
-    if (pcurve.IsNull() || edge.Orientation() == TopAbs_INTERNAL || edge.Orientation() == TopAbs_EXTERNAL) return;
+    if (edge.Orientation() == TopAbs_INTERNAL || edge.Orientation() == TopAbs_EXTERNAL) return;
+    const EdgeOnSurface curve(edge, TopoDS::Face(face.Oriented(TopAbs_FORWARD)), surface_);
+    if (!curve.is_on_face()) return;
     const double sign = edge.Orientation() == TopAbs_REVERSED ? -1 : 1;
-    const Geom2dAdaptor_Curve curve(pcurve, first, last);
-    TColStd_Array1OfReal spans(1, curve.NbIntervals(GeomAbs_CN) + 1);
-    curve.Intervals(spans, GeomAbs_CN);
-    for (int i = spans.Lower(); i < spans.Upper(); ++i) add_span(curve, spans(i), spans(i + 1), sign);
+    const std::vector<double> spans = curve.spans();
+    for (std::size_t i = 0; i + 1 < spans.size(); ++i) add_span(curve, spans[i], spans[i + 1], sign);
   }
 
-  struct Piece {
-    Components sum{};
-    double area = 0;  // of the strips under the piece, not cancelled
-  };
-
-  void add_span(const Geom2dAdaptor_Curve& curve, double a, double b, double sign) {
-    const Piece whole = integrate(curve, a, b);
-    refine(curve, a, b, whole, sign, 0);
+  void add_span(const EdgeOnSurface& curve, double a, double b, double sign) {
+    refine(curve, a, b, integrate(curve, a, b), sign, 0);
   }
 
-  // Halving until the halves agree with the whole, in units of the area and the distance from the origin: many of the
-  // sums cancel to nothing, so their own size is no measure.
-  void refine(const Geom2dAdaptor_Curve& curve, double a, double b, const Piece& whole, double sign, int depth) {
-    if (whole.area == 0) return;
+  // Halving until the halves agree with the whole, in units of the area within the bounds and the distance from the
+  // origin: many of the sums cancel to nothing, so their own size is no measure.
+  void refine(const EdgeOnSurface& curve, double a, double b, const Components& whole, double sign, int depth) {
     const double middle = (a + b) / 2;
-    const Piece left = integrate(curve, a, middle), right = integrate(curve, middle, b);
+    const Components left = integrate(curve, a, middle), right = integrate(curve, middle, b);
     bool agrees = true;
     for (std::size_t i = 0; i < component_count; ++i)
-      agrees = agrees && std::abs(left.sum[i] + right.sum[i] - whole.sum[i]) <= 1e-12 * whole.area * unit_of(i);
+      agrees = agrees && std::abs(left[i] + right[i] - whole[i]) <= 1e-12 * patch_ * unit_of(i);
     if (agrees || depth == 8) {
-      add(total_, sign, left.sum);
-      add(total_, sign, right.sum);
+      add(total_, sign, left);
+      add(total_, sign, right);
       return;
     }
     refine(curve, a, middle, left, sign, depth + 1);
@@ -133,18 +214,13 @@ class BoundaryIntegral {
     return is_volume ? reach_ : is_centroid ? reach_ * reach_ : 1;
   }
 
-  [[nodiscard]] Piece integrate(const Geom2dAdaptor_Curve& curve, double a, double b) const {
-    Piece piece;
+  [[nodiscard]] Components integrate(const EdgeOnSurface& curve, double a, double b) const {
+    Components sum{};
     gauss(a, b, [&](double t, double weight) {
-      gp_Pnt2d uv;
-      gp_Vec2d tangent;
-      curve.D1(t, uv, tangent);
-      if (tangent.Y() == 0) return;  // along u: dv is zero
-      const Components inner = integrate_u(uv.X(), uv.Y());
-      add(piece.sum, weight * tangent.Y(), inner);
-      piece.area += std::abs(weight * tangent.Y() * inner[0]);
+      const EdgeOnSurface::Point at = curve(t);
+      if (at.dv != 0) add(sum, weight * at.dv, integrate_u(at.u, at.v));  // zero: along u
     });
-    return piece;
+    return sum;
   }
 
   [[nodiscard]] Components integrate_u(double u, double v) const {
@@ -163,6 +239,7 @@ class BoundaryIntegral {
   GeomAdaptor_Surface surface_;
   std::vector<double> breaks_;
   double reach_ = 0;  // of the face from the origin, roughly
+  double patch_ = 0;  // area within the bounds, roughly
   Components total_{};
 };
 

@@ -23,7 +23,10 @@ std::optional<Body> read_step(const Resource& file, const ReadStepOptions& optio
   }
   ShapeToBodyOptions to_body;
   if (deflection) to_body.mesh = MeshTolerance{.deflection_mm = *deflection, .angle = options.angle_rad};
-  return shape_to_body(all, to_body, sink);
+  if (!to_body.mesh || !options.mesh_may_fail) return shape_to_body(all, to_body, sink);
+  DiagnosticSink of_mesh;
+  auto body = shape_to_body(all, to_body, of_mesh);
+  return body ? std::move(body) : shape_to_body(all, {}, sink);
 }
 
 }  // namespace meso::brep

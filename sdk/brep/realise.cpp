@@ -6,11 +6,9 @@
 #include <map>
 
 #include "boolean.hpp"
-#include "meso/brep/clear_triangles.hpp"
 #include "meso/brep/instance_map.hpp"
 #include "meso/brep/measure.hpp"
 #include "meso/brep/placement.hpp"
-#include "meso/brep/triangles.hpp"
 #include "meso/eval/pattern_reach.hpp"
 #include "realise_boundary.hpp"
 #include "realise_fold.hpp"
@@ -235,15 +233,6 @@ void append(Realisation& to, Realisation from) {
   to.realise_seconds += from.realise_seconds;
 }
 
-/// What cannot be cleared is told: the triangles are closed, but pass through each other there.
-void clear_and_tell(Body& body, ElementId where, const SolidContext& context) {
-  const std::size_t left = clear_triangles(body, context.run);
-  if (left == 0 || context.run.should_stop()) return;
-  std::size_t all = 0;
-  visit_triangles(body, [&](std::span<const Triangle> block) { all += block.size(); });
-  context.report(Code::mesh_overlaps, where, {std::to_string(left), std::to_string(all)});
-}
-
 }  // namespace
 
 std::optional<MeshFineness> fineness(const RealiseOptions& options) {
@@ -307,7 +296,6 @@ std::optional<Realisation> realise(const eval::Evaluation& evaluation, const Par
     auto body = folded->body ? std::move(folded->body) : to_body(folded->solids, options, sink);
     if (!body) return {};
     if (!folded->body) body->pieces_volume = folded->pieces_volume;
-    if (options.mesh) clear_and_tell(*body, part.id_in_source, context);
     result.body = std::move(*body);
     result.body.fragments = result.cells.fragments;
     result.realise_seconds = seconds_since(start);
@@ -325,9 +313,7 @@ std::optional<Body> realise_macrostructure(const eval::Evaluation& evaluation, c
   const auto solids = shape ? solid_from_shape(*shape, {}, context) : std::nullopt;
   if (!solids) return {};
   try {
-    auto body = to_body(*solids, options, sink);
-    if (body && options.mesh) clear_and_tell(*body, macrostructure.id_in_source, context);
-    return body;
+    return to_body(*solids, options, sink);
   } catch (const Standard_Failure& failure) {
     context.report(Code::geometry_kernel, macrostructure.id_in_source,
                    {"realising a macrostructure", failure.GetMessageString()});

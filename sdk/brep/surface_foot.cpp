@@ -10,7 +10,7 @@
 namespace meso::brep {
 namespace {
 
-constexpr double search_tolerance = 1e-9;
+constexpr double search_tolerance = 1e-9, near_mm = 1e-6;
 
 }  // namespace
 
@@ -20,8 +20,15 @@ SurfaceFoot::SurfaceFoot(const Surface& surface) : surface_(surface) {
 
 Vec3 SurfaceFoot::operator()(Vec3 p) {
   if (search_.IsNull() || !std::isfinite(p.x + p.y + p.z)) return nearest_point(surface_, p);
-  last_ = has_last_ ? search_->NextValueOfUV(last_, to_pnt(p), search_tolerance)
-                    : search_->ValueOfUV(to_pnt(p), search_tolerance);
+  // A search that begins at the last answer can end on the far side of a body: what is not at hand is searched for from
+  // anywhere.
+  const auto distance = [&](const gp_Pnt2d& uv) { return norm(to_vec(search_->Value(uv)) - p); };
+  gp_Pnt2d nearest = has_last_ ? search_->NextValueOfUV(last_, to_pnt(p), search_tolerance) : gp_Pnt2d();
+  if (!has_last_ || distance(nearest) > near_mm) {
+    const gp_Pnt2d anywhere = search_->ValueOfUV(to_pnt(p), search_tolerance);
+    if (!has_last_ || distance(anywhere) < distance(nearest)) nearest = anywhere;
+  }
+  last_ = nearest;
   has_last_ = true;
   return to_vec(search_->Value(last_));
 }

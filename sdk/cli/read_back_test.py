@@ -16,8 +16,7 @@ import tempfile
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 MESO = str(pathlib.Path(sys.argv[1]).resolve())
 SAME_VOLUME = 1e-4
-# Ours integrates over the boundary curves that OpenCASCADE's reader approximates on each face.
-SAME_VOLUME_READ_BY_US = 5e-4
+SAME_VOLUME_READ_BY_US = 1e-5
 CHORDS = 0.05  # tetrahedra fill round struts with chords
 
 DOCUMENT = """<meso xmlns="urn:meso-format:1.0" version="1.0" unit="millimeter">

@@ -2,6 +2,8 @@
 #include "meso/mesh/self_contact.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <compare>
 #include <vector>
 
 namespace meso {
@@ -56,6 +58,20 @@ bool triangles_meet(const Corners& s, const Corners& t) {
   }
   const bool coplanar = std::all_of(t.begin(), t.end(), [&](Vec3 p) { return orientation(s[0], s[1], s[2], p) == 0; });
   return coplanar && coplanar_overlap(s, t);
+}
+
+/// The shortest way along the normal of t that takes s to one side of it.
+double way_out(const Corners& s, const Corners& t) {
+  const Vec3 normal = cross(t[1] - t[0], t[2] - t[0]);
+  const double length = norm(normal);
+  if (length == 0) return 0;
+  double above = 0, below = 0;
+  for (const Vec3& p : s) {
+    const double height = dot(p - t[0], normal) / length;
+    above = std::max(above, height);
+    below = std::max(below, -height);
+  }
+  return std::min(above, below);
 }
 
 /// A uniform grid whose buckets hold the triangles that can reach them.
@@ -155,7 +171,7 @@ void visit_pairs(const TriangleMesh& mesh, Visit visit) {
         const Vec3 corner{std::max(box.min.x, other.min.x), std::max(box.min.y, other.min.y),
                           std::max(box.min.z, other.min.z)};
         if (grid.bucket_of(corner) != b || !triangles_meet(s, t)) continue;
-        if (!visit(*i, *j, corner)) return;
+        if (!visit(*i, *j, s, t, corner)) return;
       }
     }
   }
@@ -163,24 +179,53 @@ void visit_pairs(const TriangleMesh& mesh, Visit visit) {
 
 }  // namespace
 
-SelfContacts count_self_contacts(const TriangleMesh& mesh, std::uint64_t limit) {
+SelfContacts count_self_contacts(const TriangleMesh& mesh, std::span<const double> heights, std::uint64_t limit) {
   SelfContacts out;
-  visit_pairs(mesh, [&](std::uint32_t, std::uint32_t, Vec3 corner) {
-    if (out.pairs == 0) out.first_place = corner;
-    return ++out.pairs < limit;
+  visit_pairs(mesh, [&](std::uint32_t i, std::uint32_t j, const Corners& s, const Corners& t, Vec3 corner) {
+    const double depth = std::min(way_out(s, t), way_out(t, s));
+    if (!out.place || depth > out.deepest_mm) {
+      out.place = corner;
+      out.deepest_mm = depth;
+    }
+    ++out.pairs;
+    out.deep += heights.empty() || !(depth <= heights[i] + heights[j]);
+    return out.deep < limit;
   });
   return out;
 }
 
-std::vector<std::uint32_t> triangles_in_contact(const TriangleMesh& mesh) {
-  std::vector<std::uint32_t> out;
-  visit_pairs(mesh, [&](std::uint32_t i, std::uint32_t j, Vec3) {
-    out.insert(out.end(), {i, j});
-    return true;
-  });
-  std::sort(out.begin(), out.end());
-  out.erase(std::unique(out.begin(), out.end()), out.end());
-  return out;
+// Where a surface of curvature k turns by t between the middles of two triangles of altitudes g and h over their common
+// segment, t = k (g + h) / 3; over an equilateral triangle of altitude h it rises by 2/9 k h^2, over others by less.
+std::vector<double> chord_heights(const TriangleMesh& mesh) {
+  constexpr double sharpest_turn = 1;
+  std::vector<Vec3> normals;  // as long as the triangle has area, twice
+  for (const auto& t : mesh.triangles)
+    normals.push_back(cross(mesh.points[t[1]] - mesh.points[t[0]], mesh.points[t[2]] - mesh.points[t[0]]));
+  struct Side {
+    std::uint32_t a, b, triangle;
+    auto operator<=>(const Side&) const = default;
+  };
+  std::vector<Side> sides;
+  for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i)
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto [a, b] = std::minmax(mesh.triangles[i][k], mesh.triangles[i][(k + 1) % 3]);
+      sides.push_back({a, b, i});
+    }
+  std::sort(sides.begin(), sides.end());
+  std::vector<double> heights(mesh.triangles.size());
+  for (std::size_t n = 1; n < sides.size(); ++n) {
+    const Side &s = sides[n - 1], &t = sides[n];
+    if (s.a != t.a || s.b != t.b) continue;
+    const double turn = std::atan2(norm(cross(normals[s.triangle], normals[t.triangle])),
+                                   dot(normals[s.triangle], normals[t.triangle]));
+    const double length = norm(mesh.points[s.b] - mesh.points[s.a]);
+    if (turn > sharpest_turn || length == 0) continue;
+    const double g = norm(normals[s.triangle]) / length, h = norm(normals[t.triangle]) / length;
+    if (g + h == 0) continue;
+    heights[s.triangle] = std::max(heights[s.triangle], 2 * turn * g * g / (3 * (g + h)));
+    heights[t.triangle] = std::max(heights[t.triangle], 2 * turn * h * h / (3 * (g + h)));
+  }
+  return heights;
 }
 
 }  // namespace meso

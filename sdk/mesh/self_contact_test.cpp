@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <numbers>
+
 namespace meso {
 namespace {
 
@@ -28,8 +31,58 @@ TEST(SelfContact, FindsCrossingBodies) {
   add_tetrahedron(mesh, {0.1, 0.1, -0.5}, 1);
   const SelfContacts found = count_self_contacts(mesh);
   EXPECT_GT(found.pairs, 0U);
-  EXPECT_TRUE(found.first_place.has_value());
-  EXPECT_EQ(count_self_contacts(mesh, 1).pairs, 1U);
+  EXPECT_EQ(found.deep, found.pairs);
+  EXPECT_TRUE(found.place.has_value());
+  EXPECT_EQ(count_self_contacts(mesh, {}, 1).pairs, 1U);
+}
+
+/// A ring of `sides` flat strips around the z axis, each two triangles.
+void add_prism(TriangleMesh& mesh, Vec3 at, double radius, std::uint32_t sides, double turn) {
+  const auto n = static_cast<std::uint32_t>(mesh.points.size());
+  for (std::uint32_t i = 0; i < sides; ++i) {
+    const double angle = turn + 2 * std::numbers::pi * i / sides;
+    for (const double z : {0.0, 10.0})
+      mesh.points.push_back(at + Vec3{radius * std::cos(angle), radius * std::sin(angle), z});
+  }
+  for (std::uint32_t i = 0; i < sides; ++i) {
+    const std::uint32_t a = n + 2 * i, b = n + 2 * ((i + 1) % sides);
+    mesh.triangles.push_back({a, b, b + 1});
+    mesh.triangles.push_back({a, b + 1, a + 1});
+  }
+}
+
+TEST(SelfContact, ChordHeightsOfACylinder) {
+  TriangleMesh mesh;
+  add_prism(mesh, {}, 1, 24, 0);
+  const double height = 1 - std::cos(std::numbers::pi / 24);
+  for (const double h : chord_heights(mesh)) {
+    EXPECT_GE(h, height);
+    EXPECT_LE(h, 3 * height);
+  }
+}
+
+TEST(SelfContact, ChordHeightsKnowEdges) {
+  TriangleMesh mesh;
+  add_tetrahedron(mesh, {0, 0, 0}, 1);
+  for (const double h : chord_heights(mesh)) EXPECT_EQ(h, 0);
+}
+
+// Corners of one cylinder stand in the thin gap around the other and pass its chords; they do not pass its surface.
+TEST(SelfContact, ChordsThatCrossAreNotDeep) {
+  TriangleMesh mesh;
+  add_prism(mesh, {}, 1, 24, 0);
+  add_prism(mesh, {}, 0.999, 24, std::numbers::pi / 24);
+  const SelfContacts found = count_self_contacts(mesh, chord_heights(mesh));
+  EXPECT_GT(found.pairs, 0U);
+  EXPECT_EQ(found.deep, 0U);
+  EXPECT_LT(found.deepest_mm, 2 * (1 - std::cos(std::numbers::pi / 24)));
+}
+
+TEST(SelfContact, CylindersThatCrossAreDeep) {
+  TriangleMesh mesh;
+  add_prism(mesh, {}, 1, 24, 0);
+  add_prism(mesh, {1.5, 0, 0}, 1, 24, 0.1);
+  EXPECT_GT(count_self_contacts(mesh, chord_heights(mesh)).deep, 0U);
 }
 
 TEST(SelfContact, FindsFacesThatLieOnEachOther) {

@@ -18,7 +18,7 @@ namespace meso::operations {
 namespace {
 
 constexpr double identity_tolerance = 1e-6;   ///< relative, of volumes that are integrals of the same faces
-constexpr double read_back_tolerance = 5e-4;  ///< relative: OpenCASCADE approximates curves in its readers
+constexpr double read_back_tolerance = 2e-5;  ///< relative: B-spline faces have approximated curves when read
 // Between edges and faces whichever is more.
 constexpr double largest_gap_mm = 1e-4, largest_gap_of_cell = 1e-3;
 constexpr double missed_deflection = 3;  ///< OpenCASCADE's mesher aims at a deflection and can miss it threefold

@@ -21,6 +21,7 @@ struct ReadStepOptions {
   std::optional<double> deflection_mm{};
   std::optional<double> relative_deflection{};  ///< the same as a fraction of the diagonal of the solids' box
   double angle_rad = 0.5;
+  bool mesh_may_fail = false;  ///< then a body without triangles will do
 };
 
 [[nodiscard]] std::optional<Body> read_step(const Resource& file, const ReadStepOptions& options, const RunOptions& run,

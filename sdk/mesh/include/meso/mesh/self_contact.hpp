@@ -2,16 +2,23 @@
 #pragma once
 // Does a surface touch or cross itself?
 //
-//   if (count_self_contacts(mesh).pairs > 0) ...
+//   const SelfContacts found = count_self_contacts(mesh, chord_heights(mesh));
+//   if (found.deep > 0) ...   // more than its chords explain
 //
 // Counts pairs of triangles that share no point of the mesh and yet have a point in common. Triangles that share a
 // point are not tested against each other: where two sheets meet in a whole edge, the edge is used four times, which an
 // edge audit tells. Decided in doubles without tolerance: bodies that touch in a point or along a face within rounding
-// may go either way. Cost: about 1 us a triangle for evenly sized triangles, 40 bytes each. Thread rule: pure.
+// may go either way.
+//
+// Triangles are chords. Where two curved faces come close, those of one can pass through those of the other although
+// the surfaces keep apart, but no deeper than the two are off their surfaces. A pair is deep if it goes deeper: the
+// surfaces themselves cross. How deep is the shortest way along the normal of either triangle that parts the two.
+// Cost: about 1 us a triangle for evenly sized triangles, 60 bytes each. Thread rule: pure.
 
 #include <cstdint>
 #include <limits>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "meso/base/triangle_mesh.hpp"
@@ -19,14 +26,18 @@
 namespace meso {
 
 struct SelfContacts {
-  std::uint64_t pairs = 0;          ///< stops counting at the limit
-  std::optional<Vec3> first_place;  ///< a corner of the first pair's common box
+  std::uint64_t pairs = 0;
+  std::uint64_t deep = 0;     ///< of those, deeper than the triangles may be off; counting stops at the limit
+  double deepest_mm = 0;      ///< of all pairs
+  std::optional<Vec3> place;  ///< a corner of the common box of the deepest pair
 };
 
-[[nodiscard]] SelfContacts count_self_contacts(const TriangleMesh& mesh,
+/// `heights`: how far each triangle may be off its surface; none: not at all.
+[[nodiscard]] SelfContacts count_self_contacts(const TriangleMesh& mesh, std::span<const double> heights = {},
                                                std::uint64_t limit = std::numeric_limits<std::uint64_t>::max());
 
-/// The triangles of all pairs, ascending.
-[[nodiscard]] std::vector<std::uint32_t> triangles_in_contact(const TriangleMesh& mesh);
+/// How far each triangle is off a smooth surface through its corners, as the turn from its neighbours tells. Turns of
+/// more than a radian are edges of the body.
+[[nodiscard]] std::vector<double> chord_heights(const TriangleMesh& mesh);
 
 }  // namespace meso
