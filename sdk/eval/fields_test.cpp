@@ -68,6 +68,16 @@ TEST(Scatter, SortsStablyAndThinsGreedily) {
   EXPECT_THAT(order("<sort by='f.s' order='descending'/><thin distance='1'/>"), ElementsAre(1, 3));
 }
 
+// What sorting, thinning and searching take is asked for before; walking over records takes nothing.
+TEST(Scatter, ObeysTheMemoryBudget) {
+  const auto faults = [](const std::string& pattern) {
+    return faults_of(pattern_text(pattern, cell, "", four), {.run = {.max_memory_bytes = 80}});
+  };
+  EXPECT_THAT(faults("<scatter field='f'/>"), ElementsAre());
+  EXPECT_THAT(faults("<scatter field='f'><sort by='f.s'/></scatter>"), ElementsAre("LIMIT_MEMORY"));
+  EXPECT_THAT(faults("<scatter field='f'><thin distance='1'/></scatter>"), ElementsAre("LIMIT_MEMORY"));
+}
+
 TEST(Scatter, DroppedCellsKeepTheirRecord) {
   const auto cells = cells_of(pattern_text("<scatter field='f'/><when test='f.s == 7'/>", cell, "", four));
   EXPECT_THAT(records_of(cells), ElementsAre(1, 2));
