@@ -93,6 +93,7 @@ BodySurface::Face BodySurface::read(const TopoDS_Face& face, double deflection) 
     Edge& value = out.edges.emplace_back();
     for (int i = 1; i <= polygon->NbNodes(); ++i)
       value.nodes.push_back(static_cast<std::uint32_t>(polygon->Node(i) - 1));
+    for (int i = 1; polygon->HasParameters() && i <= polygon->NbNodes(); ++i) value.at.push_back(polygon->Parameter(i));
     value.seam = BRep_Tool::IsClosed(edge, face);
     const bool line = BRepAdaptor_Curve(edge).GetType() == GeomAbs_Line;
     value.reach = line ? 0 : 3 * deflection;

@@ -36,7 +36,8 @@ class BodySurface {
 
   struct Edge {
     std::vector<std::uint32_t> nodes;
-    double reach = 0;  ///< how far the curve is from them
+    std::vector<double> at;  ///< parameters of the nodes on the curve
+    double reach = 0;        ///< how far the curve is from them
     bool seam = false;
   };
   struct Face {

@@ -83,9 +83,12 @@ ClippedCell CellClipper::attempt(const Attempt& how, WholeCell& whole, const Ind
                                  const std::vector<std::uint32_t>& faces) {
   const Vec3 to_cell = how.shift - (grid_.origin(cell) - grid_.first.min);
   LocalBody body;
-  for (const TopoDS_Shape& solid : local_.near(cell, faces, how.patches)) body.faces.push_back(moved(solid, to_cell));
+  const LocalFaces::Near near = local_.near(cell, faces, how.patches);
+  for (const TopoDS_Shape& solid : near.solids) body.faces.push_back(moved(solid, to_cell));
   const Vec3 centre = grid_.centre(cell), half = 0.5 * grid_.size();
+  std::vector<std::array<std::size_t, 2>> ranges;
   for (const std::uint32_t number : faces) {
+    const std::size_t first = body.triangles.size();
     const BodySurface::Face& face = surface_.face(number);
     body.reach = std::fmax(body.reach, face.reach);
     const double by = face.reach + 0.1 * norm(half);
@@ -94,7 +97,9 @@ ClippedCell CellClipper::attempt(const Attempt& how, WholeCell& whole, const Ind
       if (overlaps(triangle, centre, {half.x + by, half.y + by, half.z + by}))
         body.triangles.push_back({triangle[0] + to_cell, triangle[1] + to_cell, triangle[2] + to_cell});
     }
+    ranges.push_back({first, body.triangles.size()});
   }
+  for (const std::size_t i : near.stand_for) body.of_face.push_back(ranges[i]);
   body.contains = [&](Vec3 p) { return surface_.contains(p - to_cell); };
   body.side = [&](Vec3 p) { return side_of(p - to_cell); };
   const Vec3 size = grid_.size();

@@ -24,17 +24,36 @@ bool overlaps(const Triangle3& triangle, const Box3& box) {
   return brep::overlaps(triangle, 0.5 * (box.min + box.max), 0.5 * (box.max - box.min));
 }
 
-/// Whether they may touch, given how far triangles can be off.
-bool come_near(const WholeCell::Face& face, const std::vector<Triangle3>& others, double by) {
-  const Box3 all{face.box.min - Vec3{by, by, by}, face.box.max + Vec3{by, by, by}};
-  std::vector<Triangle3> near;
-  for (const Triangle3& other : others)
-    if (overlaps(other, all)) near.push_back(other);
-  if (near.empty()) return false;
-  return std::ranges::any_of(face.triangles, [&](const Triangle3& own) {
-    const Box3 box = box_of(own, by);
-    return std::ranges::any_of(near, [&](const Triangle3& other) { return overlaps(other, box); });
-  });
+bool meet(const Box3& a, const Box3& b) {
+  for (std::size_t i = 0; i < 3; ++i)
+    if (a.max[i] < b.min[i] || b.max[i] < a.min[i]) return false;
+  return true;
+}
+
+/// Faces of the cell and of the body that may touch one of the other, given how far triangles can be off.
+struct NearFaces {
+  std::vector<bool> of_cell, of_body;
+};
+
+NearFaces near_faces(const WholeCell& cell, const LocalBody& body, double by) {
+  NearFaces out{std::vector<bool>(cell.faces.size()), std::vector<bool>(body.of_face.size())};
+  std::vector<Box3> boxes;
+  for (const Triangle3& triangle : body.triangles) boxes.push_back(box_of(triangle, by));
+  for (std::size_t f = 0; f < cell.faces.size(); ++f) {
+    const WholeCell::Face& face = cell.faces[f];
+    for (std::size_t t = 0; t < body.of_face.size(); ++t) {
+      if (out.of_cell[f] && out.of_body[t]) continue;
+      for (std::size_t i = body.of_face[t][0]; i < body.of_face[t][1] && !(out.of_cell[f] && out.of_body[t]); ++i) {
+        if (!meet(boxes[i], face.box)) continue;
+        const bool touch = std::ranges::any_of(face.triangles, [&](const Triangle3& own) {
+          const Box3 box = box_of(own, by);
+          return meet(box, boxes[i]) && overlaps(body.triangles[i], box);
+        });
+        if (touch) out.of_cell[f] = out.of_body[t] = true;
+      }
+    }
+  }
+  return out;
 }
 
 class FaceDivision {
@@ -68,24 +87,28 @@ bool FaceDivision::intersect(const RunOptions& run) {
   for (const WholeCell::Face& face : cell_.faces) originals.push_back(face.face);
   const std::vector<TopoDS_Face> own =
       faces_in(BRepBuilderAPI_Copy(compound_of(originals), Standard_False, Standard_False).Shape());
-  std::vector<TopoDS_Face> tools;
-  TopTools_ListOfShape arguments;
-  std::vector<bool> near;
-  std::vector<TopoDS_Face> near_faces;
-  for (std::size_t f = 0; f < own.size(); ++f) {
-    near.push_back(options_.all_faces ||
-                   come_near(cell_.faces[f], body_.triangles, cell_.reach + body_.reach + tiny * options_.size));
-    if (near.back()) near_faces.push_back(own[f]);
+  NearFaces near = near_faces(cell_, body_, cell_.reach + body_.reach + tiny * options_.size);
+  if (options_.all_faces) {
+    near.of_cell.assign(near.of_cell.size(), true);
+    near.of_body.assign(near.of_body.size(), true);
   }
-  if (!near_faces.empty()) arguments.Append(compound_of(near_faces));
+  std::vector<TopoDS_Face> tools, near_own;
+  TopTools_ListOfShape arguments;
+  for (std::size_t f = 0; f < own.size(); ++f)
+    if (near.of_cell[f]) near_own.push_back(own[f]);
+  if (!near_own.empty()) arguments.Append(compound_of(near_own));
   for (const TopoDS_Shape& solid : body_.faces) {
     const TopoDS_Shape copy = BRepBuilderAPI_Copy(solid, Standard_False, Standard_False).Shape();
-    for (const TopoDS_Face& face : faces_in(copy)) tools.push_back(face);
-    arguments.Append(copy);
+    std::vector<TopoDS_Face> near_tools;
+    for (const TopoDS_Face& face : faces_in(copy)) {
+      if (near.of_body[tools.size()]) near_tools.push_back(face);
+      tools.push_back(face);
+    }
+    if (!near_tools.empty()) arguments.Append(compound_of(near_tools));
   }
   BOPAlgo_Builder builder;
-  if (near_faces.empty()) {
-    take_pieces(builder, own, near, tools);
+  if (near_own.empty() || arguments.Extent() < 2) {
+    take_pieces(builder, own, near.of_cell, tools);
     return true;
   }
   const Handle(StopWatch) watch = new StopWatch(run);
@@ -97,7 +120,7 @@ bool FaceDivision::intersect(const RunOptions& run) {
   for (const TopoDS_Shape& argument : arguments) builder.AddArgument(argument);
   builder.PerformWithFiller(filler, watch->Start());
   if (builder.HasErrors()) return false;
-  take_pieces(builder, own, near, tools);
+  take_pieces(builder, own, near.of_cell, tools);
   return true;
 }
 

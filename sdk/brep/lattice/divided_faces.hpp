@@ -18,9 +18,10 @@ namespace meso::brep {
 struct LocalBody {
   std::vector<TopoDS_Shape> faces;  ///< compounds, one for each solid
   std::vector<Triangle3> triangles;
-  double reach = 0;                    ///< how far a face is from its triangles
-  std::function<bool(Vec3)> contains;  ///< for points that keep `reach` from the triangles
-  std::function<int(Vec3)> side;       ///< of any point, slowly; +1: inside, -1: outside, 0: too close to say
+  std::vector<std::array<std::size_t, 2>> of_face;  ///< per face: its first triangle, and the first of others
+  double reach = 0;                                 ///< how far a face is from its triangles
+  std::function<bool(Vec3)> contains;               ///< for points that keep `reach` from the triangles
+  std::function<int(Vec3)> side;  ///< of any point, slowly; +1: inside, -1: outside, 0: too close to say
 };
 
 struct SplitOptions {

@@ -8,8 +8,10 @@ namespace meso::brep {
 namespace {
 
 constexpr double pi = std::numbers::pi;
-constexpr double margin = 0.1;    ///< of the cell, by which a patch exceeds it
-constexpr double steepest = 1.3;  ///< latitude of a patch on a sphere
+constexpr double margin = 0.1;          ///< of the cell, by which a patch exceeds it
+constexpr double wide_margin = 0.5;     ///< of the cell, where the narrow one did not do
+constexpr std::size_t many_edges = 12;  ///< from here on a window in the face is cheaper than the face
+constexpr double steepest = 1.3;        ///< latitude of a patch on a sphere
 
 /// A surface with parameters that are regular where the cell is.
 struct LocalSurface {
@@ -81,46 +83,58 @@ std::array<double, 2> parameters_on(const LocalSurface& local, Vec3 p) {
   return at;
 }
 
-/// A rectangle of parameters.
-struct Range {
-  std::array<double, 2> low{HUGE_VAL, HUGE_VAL}, high{-HUGE_VAL, -HUGE_VAL};
-  void extend(const std::array<double, 2>& at) {
-    for (std::size_t i = 0; i < 2; ++i) {
-      low[i] = std::fmin(low[i], at[i]);
-      high[i] = std::fmax(high[i], at[i]);
-    }
-  }
-  void grow(double share) {
-    for (std::size_t i = 0; i < 2; ++i) {
-      const double by = share * (high[i] - low[i]);
-      low[i] -= by;
-      high[i] += by;
-    }
-  }
-  /// Of a segment, or one from seam to seam.
-  [[nodiscard]] bool meets(const std::array<double, 2>& p, const std::array<double, 2>& q) const {
-    double enter = 0, leave = 1;
-    for (std::size_t i = 0; i < 2; ++i) {
-      const double d = q[i] - p[i];
-      if (d == 0) {
-        if (p[i] < low[i] || p[i] > high[i]) return false;
-        continue;
-      }
-      const double a = (low[i] - p[i]) / d, b = (high[i] - p[i]) / d;
-      enter = std::fmax(enter, std::fmin(a, b));
-      leave = std::fmin(leave, std::fmax(a, b));
-    }
-    return enter <= leave;
-  }
-};
-
 /// The part of a B-spline surface over the range; other surfaces are as good as their trimming.
-Handle(Geom_Surface) cut_out(const Handle(Geom_Surface) & surface, const Range& range) {
+Handle(Geom_Surface) cut_out(const Handle(Geom_Surface) & surface, const ParameterRange& range) {
   const auto spline = Handle(Geom_BSplineSurface)::DownCast(surface);
   if (spline.IsNull()) return surface;
   const Handle(Geom_BSplineSurface) part = Handle(Geom_BSplineSurface)::DownCast(spline->Copy());
   part->Segment(range.low[0], range.high[0], range.low[1], range.high[1]);
   return Handle(Geom_Surface)(part);
+}
+
+/// The triangles near a cell as a rectangle of parameters. Empty where they wrap around.
+template <typename Parameters, typename Wraps>
+ParameterRange range_of_triangles(const BodySurface::Face& mesh, Vec3 centre, Vec3 grown, Parameters parameters,
+                                  Wraps wraps) {
+  ParameterRange range;
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    if (!overlaps(mesh.triangle(t), centre, grown)) continue;
+    std::array<std::array<double, 2>, 3> at;
+    for (std::size_t k = 0; k < 3; ++k) at[k] = parameters(mesh.triangles[t][k]);
+    for (std::size_t k = 0; k < 3; ++k)
+      if (wraps(at[k], at[(k + 1) % 3])) return {};
+    for (const auto& p : at) range.extend(p);
+  }
+  range.grow(0.05);
+  return range;
+}
+
+/// What of a plane can be in a box.
+ParameterRange range_on_plane(const gp_Pln& plane, Vec3 centre, Vec3 grown) {
+  ParameterRange range;
+  for (int corner = 0; corner < 8; ++corner) {
+    const Vec3 p = centre + Vec3{corner & 1 ? grown.x : -grown.x, corner & 2 ? grown.y : -grown.y,
+                                 corner & 4 ? grown.z : -grown.z};
+    std::array<double, 2> at{};
+    ElSLib::Parameters(plane, to_pnt(p), at[0], at[1]);
+    range.extend(at);
+  }
+  return range;
+}
+
+void keep_within(ParameterRange& range, const Geom_Surface& surface) {
+  ParameterRange whole;
+  surface.Bounds(whole.low[0], whole.high[0], whole.low[1], whole.high[1]);
+  for (std::size_t i = 0; i < 2; ++i) {
+    range.low[i] = std::fmax(range.low[i], whole.low[i]);
+    range.high[i] = std::fmin(range.high[i], whole.high[i]);
+  }
+}
+
+Vec3 grown_half(const CellGrid& grid, double reach, double share) {
+  const Vec3 half = 0.5 * grid.size();
+  const double by = reach + share * norm(half);
+  return {half.x + by, half.y + by, half.z + by};
 }
 
 }  // namespace
@@ -130,38 +144,67 @@ LocalFaces::LocalFaces(const BodySurface& surface, const CellGrid& grid) : surfa
   std::uint32_t solid = 0;
   for (TopExp_Explorer one(body, TopAbs_SOLID); one.More(); one.Next(), ++solid)
     for (TopExp_Explorer it(one.Current(), TopAbs_FACE); it.More(); it.Next()) {
-      faces_.push_back(TopoDS::Face(it.Current()));
+      FaceEdges& face = faces_.emplace_back(FaceEdges{TopoDS::Face(it.Current()), {}});
+      for (TopExp_Explorer edge(face.face.Oriented(TopAbs_FORWARD), TopAbs_EDGE); edge.More(); edge.Next())
+        if (!BRep_Tool::Degenerated(TopoDS::Edge(edge.Current()))) face.edges.push_back(TopoDS::Edge(edge.Current()));
       solid_of_.push_back(solid);
     }
 }
 
-std::vector<TopoDS_Shape> LocalFaces::near(const Index3& cell, const std::vector<std::uint32_t>& faces,
-                                           bool patches) const {
-  std::vector<TopoDS_Shape> solids;
+LocalFaces::Near LocalFaces::near(const Index3& cell, const std::vector<std::uint32_t>& faces, bool patches) const {
+  FaceWindows windows(grid_.tolerance);
+  std::vector<TopoDS_Face> patched;
+  for (const std::uint32_t number : faces) {
+    patched.push_back(patches ? patch(number, cell) : TopoDS_Face());
+    if (!patched.back().IsNull()) continue;
+    const FaceEdges& face = faces_[number];
+    const ParameterRange range =
+        face.edges.size() < many_edges ? ParameterRange{} : window(number, cell, patches ? margin : wide_margin);
+    if (range.empty())
+      windows.add(face);
+    else
+      windows.add(face, surface_.face(number), range);
+  }
+  const std::vector<std::vector<TopoDS_Face>> others = windows.made();
+  auto other = others.begin();
+  Near out;
   const BRep_Builder builder;
   std::uint32_t last = 0;
-  for (const std::uint32_t number : faces) {
-    if (solids.empty() || solid_of_[number] != last) {
+  for (std::size_t i = 0; i < faces.size(); ++i) {
+    if (out.solids.empty() || solid_of_[faces[i]] != last) {
       TopoDS_Compound compound;
       builder.MakeCompound(compound);
-      solids.push_back(compound);
-      last = solid_of_[number];
+      out.solids.push_back(compound);
+      last = solid_of_[faces[i]];
     }
-    const TopoDS_Face local = patches ? patch(number, cell) : TopoDS_Face();
-    builder.Add(solids.back(), local.IsNull() ? faces_[number] : local);
+    for (const TopoDS_Face& face : patched[i].IsNull() ? *other++ : std::vector{patched[i]}) {
+      builder.Add(out.solids.back(), face);
+      out.stand_for.push_back(i);
+    }
   }
-  return solids;
+  return out;
+}
+
+/// Of the face's own parameters; empty where there is none.
+ParameterRange LocalFaces::window(std::uint32_t number, const Index3& cell, double share) const {
+  const BodySurface::Face& mesh = surface_.face(number);
+  const Vec3 grown = grown_half(grid_, mesh.reach, share);
+  const BRepAdaptor_Surface surface(faces_[number].face, false);
+  if (mesh.planar) return range_on_plane(surface.Plane(), grid_.centre(cell), grown);
+  ParameterRange range = range_of_triangles(
+      mesh, grid_.centre(cell), grown, [&](std::uint32_t node) { return mesh.parameters[node]; },
+      [](const auto&, const auto&) { return false; });
+  keep_within(range, *BRep_Tool::Surface(faces_[number].face));
+  return range;
 }
 
 /// Null where an edge of the face is near, or where the parameters are not regular over the cell.
 TopoDS_Face LocalFaces::patch(std::uint32_t number, const Index3& cell) const {
   const BodySurface::Face& mesh = surface_.face(number);
-  const TopoDS_Face& face = faces_[number];
-  const Vec3 centre = grid_.centre(cell), half = 0.5 * grid_.size();
+  const TopoDS_Face& face = faces_[number].face;
+  const Vec3 centre = grid_.centre(cell), grown = grown_half(grid_, mesh.reach, margin);
   const LocalSurface local = local_surface(face, centre);
   if (local.surface.IsNull()) return {};
-  const double by = mesh.reach + margin * norm(half);
-  const Vec3 grown{half.x + by, half.y + by, half.z + by};
   const auto parameters = [&](std::uint32_t node) {
     return local.turned ? parameters_on(local, mesh.nodes[node]) : mesh.parameters[node];
   };
@@ -169,38 +212,14 @@ TopoDS_Face LocalFaces::patch(std::uint32_t number, const Index3& cell) const {
   const auto wraps = [&](const std::array<double, 2>& p, const std::array<double, 2>& q) {
     return local.turned && (std::fabs(p[0] - q[0]) > pi || (is_torus && std::fabs(p[1] - q[1]) > pi));
   };
-  Range range;
-  for (std::size_t t = 0; !mesh.planar && t < mesh.triangles.size(); ++t) {
-    const Triangle3 triangle = mesh.triangle(t);
-    if (!overlaps(triangle, centre, grown)) continue;
-    std::array<std::array<double, 2>, 3> at;
-    for (std::size_t k = 0; k < 3; ++k) at[k] = parameters(mesh.triangles[t][k]);
-    for (std::size_t k = 0; k < 3; ++k)
-      if (wraps(at[k], at[(k + 1) % 3])) return {};
-    for (const auto& p : at) range.extend(p);
-  }
+  ParameterRange range;
   if (mesh.planar) {
-    range = {};
-    const BRepAdaptor_Surface plane(face);
-    for (int corner = 0; corner < 8; ++corner) {
-      const Vec3 p = centre + Vec3{corner & 1 ? grown.x : -grown.x, corner & 2 ? grown.y : -grown.y,
-                                   corner & 4 ? grown.z : -grown.z};
-      std::array<double, 2> at{};
-      ElSLib::Parameters(plane.Plane(), to_pnt(p), at[0], at[1]);
-      range.extend(at);
-    }
+    range = range_on_plane(BRepAdaptor_Surface(face, false).Plane(), centre, grown);
   } else {
-    range.grow(0.05);
-    if (!local.turned) {
-      Range whole;
-      local.surface->Bounds(whole.low[0], whole.high[0], whole.low[1], whole.high[1]);
-      for (std::size_t i = 0; i < 2; ++i) {
-        range.low[i] = std::fmax(range.low[i], whole.low[i]);
-        range.high[i] = std::fmin(range.high[i], whole.high[i]);
-      }
-    }
+    range = range_of_triangles(mesh, centre, grown, parameters, wraps);
+    if (!local.turned) keep_within(range, *local.surface);
   }
-  if (!(range.low[0] < range.high[0] && range.low[1] < range.high[1])) return {};
+  if (range.empty()) return {};
   if (!Handle(Geom_SphericalSurface)::DownCast(local.surface).IsNull() &&
       std::fmax(std::fabs(range.low[1]), std::fabs(range.high[1])) > steepest)
     return {};

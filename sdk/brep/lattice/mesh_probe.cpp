@@ -9,7 +9,8 @@
 namespace meso::brep {
 namespace {
 
-constexpr double far = 4;  ///< radii of a group
+constexpr double far = 4;          ///< radii of a group
+constexpr std::size_t crowd = 64;  ///< triangles of a group; more are halved
 
 /// Twice the tangent of the quarter is avoided: van Oosterom & Strackee 1983.
 double solid_angle(const Triangle3& triangle, Vec3 p) {
@@ -45,6 +46,23 @@ double distance_to(std::span<const Triangle3> triangles, Vec3 p) {
 }
 
 void MeshProbe::add_group(std::vector<Triangle3> triangles) {
+  if (triangles.size() > crowd) {
+    const auto middle = triangles.begin() + static_cast<std::ptrdiff_t>(triangles.size() / 2);
+    Vec3 low{HUGE_VAL, HUGE_VAL, HUGE_VAL}, high = -low;
+    for (const Triangle3& t : triangles)
+      for (std::size_t i = 0; i < 3; ++i) {
+        low[i] = std::fmin(low[i], t[0][i]);
+        high[i] = std::fmax(high[i], t[0][i]);
+      }
+    std::size_t axis = 0;
+    for (std::size_t i = 1; i < 3; ++i)
+      if (high[i] - low[i] > high[axis] - low[axis]) axis = i;
+    std::nth_element(triangles.begin(), middle, triangles.end(),
+                     [axis](const Triangle3& a, const Triangle3& b) { return a[0][axis] < b[0][axis]; });
+    add_group({triangles.begin(), middle});
+    add_group({middle, triangles.end()});
+    return;
+  }
   Group group{std::move(triangles), {}, {}, 0};
   double weight = 0;
   for (const Triangle3& t : group.triangles) {
