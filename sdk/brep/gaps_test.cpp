@@ -8,6 +8,7 @@
 #include "meso/brep/measure.hpp"
 #include "meso/brep/triangles.hpp"
 #include "shape_to_body.hpp"
+#include "surface_foot.hpp"
 #include "test_bodies.hpp"
 
 namespace meso::brep {
@@ -87,6 +88,27 @@ TEST(Gaps, ThingsThatWereMovedAreFound) {
                                break;
                              }
                          }).edge_mm));
+}
+
+// From one end of a long body to the other, again and again: the last answer is no place to begin.
+TEST(Gaps, PointsBesideAnEllipsoidOfABSpline) {
+  gp_GTrsf stretch;
+  stretch.SetVectorialPart(gp_Mat(1, 0, 0, 0, 2, 0, 0, 0, 6));
+  const TopoDS_Shape ellipsoid =
+      BRepBuilderAPI_GTransform(BRepPrimAPI_MakeSphere(1).Solid(), stretch, Standard_True).Shape();
+  const auto body = meshed(ellipsoid);
+  ASSERT_TRUE(body);
+  const Surface& surface = body->solids[0].outer.geometry->faces[0].surface;
+  ASSERT_TRUE(std::holds_alternative<BSplineSurface>(surface));
+  SurfaceFoot foot(surface);
+  for (int i = 0; i < 200; ++i) {
+    const double u = 2.4 * i, v = std::acos(1 - (2 * i + 1) / 200.0) * (i % 2 ? 1 : -1);
+    const Vec3 on{std::sin(v) * std::cos(u), 2 * std::sin(v) * std::sin(u), 6 * std::cos(v)};
+    const Vec3 normal{on.x, on.y / 4, on.z / 36};
+    const Vec3 p = on + 0.02 / norm(normal) * normal;
+    EXPECT_NEAR(norm(foot(p) - p), 0.02, 1e-6) << i;
+    EXPECT_LT(norm(foot(on) - on), 1e-6) << i;
+  }
 }
 
 }  // namespace
