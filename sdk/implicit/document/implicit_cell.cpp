@@ -171,8 +171,8 @@ std::optional<Term> ImplicitCells::body(const eval::PlacedCell& cell, const eval
   if (varies_by_point() || !made->weights.empty() || made->share) points = points_in(use);
   if (!ask_fields(points) || !check_weights(*made, points)) return std::nullopt;
   if (made->wall_mm) {
-    see_wall(*made->wall_mm, points);
-    const Term distance = distance_to_level(made->function, use.edge_mm / 8, use.region.bounds());
+    const double thickest = see_wall(*made->wall_mm, points);
+    const Term distance = distance_to_level(made->function, use.edge_mm / 8, thickest / 2 + use.edge_mm / 8);
     return abs(distance) - 0.5 * *made->wall_mm;
   }
   const auto level = made->share ? level_for(*made, *values, box, points) : std::optional(made->level);

@@ -89,7 +89,8 @@ class ImplicitCells {
                                   std::span<const Vec3> points) const;
   [[nodiscard]] bool check_weights(const Parts& parts, std::span<const Vec3> points) const;
   [[nodiscard]] bool ask_fields(std::span<const Vec3> points) const;
-  void see_wall(const Term& wall_mm, std::span<const Vec3> points);
+  /// The thickest there.
+  double see_wall(const Term& wall_mm, std::span<const Vec3> points);
   [[nodiscard]] CellPoint mirrored(const CellPoint& point, const eval::BoxShape& box) const;
   [[nodiscard]] double root_mean_square(const Surface& surface);
   [[nodiscard]] Term surface_at(const Surface& surface, const eval::BoxShape& box, const CellPoint& point) const;

@@ -82,11 +82,17 @@ bool ImplicitCells::check_weights(const Parts& made, std::span<const Vec3> point
   return true;
 }
 
-void ImplicitCells::see_wall(const Term& wall_mm, std::span<const Vec3> points) {
+double ImplicitCells::see_wall(const Term& wall_mm, std::span<const Vec3> points) {
+  double thickest = 0;
+  const auto see = [&](double wall) {
+    thinnest_wall_ = std::fmin(thinnest_wall_, wall);
+    thickest = std::fmax(thickest, wall);
+  };
   if (wall_mm.is_constant())
-    thinnest_wall_ = std::min(thinnest_wall_, wall_mm.node().number);
+    see(wall_mm.node().number);
   else
-    for (const double wall : values_at(wall_mm, points)) thinnest_wall_ = std::fmin(thinnest_wall_, wall);
+    std::ranges::for_each(values_at(wall_mm, points), see);
+  return thickest;
 }
 
 /// Parameters that shape the function; the share itself does not.

@@ -68,33 +68,30 @@ class DensityLevel final : public PointFunction {
 
 class LevelDistance final : public PointFunction {
  public:
-  LevelDistance(const Term& f, double step, const Box3& region)
-      : f_(f),
-        step_(step),
-        lipschitz_(f_.lipschitz({region.min - Vec3{step, step, step}, region.max + Vec3{step, step, step}})) {}
+  LevelDistance(const Term& f, double step, double reach) : f_(f), step_(step), reach_(reach) {}
 
   void values(std::span<const Vec3> points, double* out) const override { values_within(points, HUGE_VAL, out); }
   void values_within(std::span<const Vec3> points, double within, double* out) const override {
     std::vector<double> f(points.size());
     f_.values(points, f);
-    for (std::size_t n = 0; n < points.size(); ++n) {
-      const double at_least = f[n] / lipschitz_;
-      out[n] = std::abs(at_least) > within ? at_least : std::copysign(distance(points[n], f[n]), f[n]);
-    }
+    const double asked = std::min(within, reach_);
+    for (std::size_t n = 0; n < points.size(); ++n)
+      out[n] = std::isnan(f[n]) ? f[n] : std::copysign(distance(points[n], f[n], asked), f[n]);
   }
   [[nodiscard]] Interval interval(const Box3& box) const override {
     const Interval f = f_.interval(box);
-    return {f.lo > 0 ? f.lo / lipschitz_ : -HUGE_VAL, f.hi < 0 ? f.hi / lipschitz_ : HUGE_VAL, f.undefined};
+    return {f.lo > 0 ? 0 : -HUGE_VAL, f.hi < 0 ? 0 : HUGE_VAL, f.undefined};
   }
 
  private:
-  [[nodiscard]] double distance(Vec3 p, double f) const {
-    if (f == 0 || std::isnan(f)) return f;
+  /// Where the slope at p says that the surface is four times as far as anybody asks, what the slope says.
+  [[nodiscard]] double distance(Vec3 p, double f, double asked) const {
     Vec3 q = p;
-    for (int i = 0; i < most_steps; ++i) {
+    for (int i = 0; i < most_steps && f != 0; ++i) {
       const Vec3 slope = f_.gradient(q);
       const double square = dot(slope, slope);
-      if (!(square > 0) || !std::isfinite(square)) break;
+      if (!(square > 0) || !std::isfinite(square)) return i == 0 ? 4 * reach_ : norm(p - q);
+      if (i == 0 && std::abs(f) > 4 * asked * std::sqrt(square)) return std::abs(f) / std::sqrt(square);
       // Down to the surface, and along it towards the point below p.
       Vec3 move = (-f / square) * slope;
       const Vec3 way = p - q;
@@ -109,7 +106,7 @@ class LevelDistance final : public PointFunction {
 
   static constexpr int most_steps = 12;
   FlatTerm f_;
-  double step_, lipschitz_;
+  double step_, reach_;
 };
 
 class Phase final : public PointFunction {
@@ -138,8 +135,8 @@ Term density_level(std::shared_ptr<const DensityTable> table, const Term& share,
   return Term::external(std::make_shared<const DensityLevel>(std::move(table), share, at));
 }
 
-Term distance_to_level(const Term& f, double step, const Box3& region) {
-  return Term::external(std::make_shared<const LevelDistance>(f, step, region));
+Term distance_to_level(const Term& f, double step, double reach) {
+  return Term::external(std::make_shared<const LevelDistance>(f, step, reach));
 }
 
 Term phase_term(std::shared_ptr<const AxisPhase> phase, const Term& coordinate) {

@@ -20,10 +20,10 @@ namespace meso::implicit {
 [[nodiscard]] Term density_level(std::shared_ptr<const DensityTable> table, const Term& share, std::vector<Term> at);
 
 /// Signed distance to {f = 0}, negative where f is: the nearest point is found by Newton's steps along the gradient and
-/// slides along the surface until the way to it is perpendicular. Good within the radius of the surface's curvature;
-/// farther away it is some distance that is not too short by much. `step`: how far one step may go at most, a part of a
-/// cell; `region`: where it will be asked.
-[[nodiscard]] Term distance_to_level(const Term& f, double step, const Box3& region);
+/// slides along the surface until the way to it is perpendicular. Good within the radius of the surface's curvature,
+/// and up to `reach`: beyond it is some distance that is larger. `step`: how far one step may go at most, a part of a
+/// cell.
+[[nodiscard]] Term distance_to_level(const Term& f, double step, double reach);
 
 /// The integral of 1 / size from `start` to the coordinate, for sizes that are a function of it. Beyond the range it
 /// goes on straight.
