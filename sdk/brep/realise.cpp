@@ -10,6 +10,7 @@
 #include "meso/brep/measure.hpp"
 #include "meso/brep/placement.hpp"
 #include "meso/eval/pattern_reach.hpp"
+#include "realise_beam_graph.hpp"
 #include "realise_boundary.hpp"
 #include "realise_fold.hpp"
 #include "realise_lattice.hpp"
@@ -127,8 +128,15 @@ class PartFold {
       const auto cells = pattern != nullptr ? evaluation_.cells(*pattern, context_.sink) : std::nullopt;
       if (!cells || !eval::check_reach(evaluation_, *cells, apply, part, box_of_all(state.solids), context_.sink))
         return false;
+      const bool is_union = apply.operation == ApplyOperation::union_ && state.solids.empty();
+      const bool may_be_graph = is_last && is_union && may_be_beam_graph(*cells);
+      const bool graph_first = may_be_graph && has_touching_circles(*cells);
+      if (graph_first && try_beam_graph(state, *cells, apply)) return true;
+      if (context_.sink.has_errors()) return false;
       if (is_last && may_be_lattice(apply, state.solids) && try_lattice(state, *cells, context, part.id.text))
         return true;
+      if (context_.sink.has_errors()) return false;
+      if (may_be_graph && !graph_first && try_beam_graph(state, *cells, apply)) return true;
       if (context_.sink.has_errors()) return false;
       made = apply_cells(state.solids, *cells, context, counts);
     } else if (apply.part) {
@@ -172,6 +180,17 @@ class PartFold {
     }
     state.body = std::move(lattice->body);
     way = "lattice";
+    return true;
+  }
+
+  bool try_beam_graph(Folded& state, const eval::CellStream& cells, const Apply& apply) {
+    if (cells.size() > options_.run.max_cells) return false;
+    auto graph = beam_graph_part(cells, apply.id_in_source, {fineness(options_), options_.run}, context_);
+    if (!graph) return false;
+    counts.placed += cells.size();
+    counts.kept += graph->kept;
+    state.body = std::move(graph->body);
+    way = "beamGraph";
     return true;
   }
 

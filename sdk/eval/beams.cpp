@@ -2,6 +2,7 @@
 #include "beams.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <string>
 
@@ -33,6 +34,7 @@ class BeamsMaker {
       BodyReader read(data_, table_, slots_, report_);
       Vec3 p{read.number(node.x), read.number(node.y), read.number(node.z)};
       if (!read.ok()) return false;
+      unplaced_.push_back(p);
       if (rules_.position) p = rules_.position(p);
       if (rules_.slots && !rules_.slots(p, node_slots_.emplace_back())) return false;
       node_position_.emplace(node.name.text, shape_.nodes.size());
@@ -81,38 +83,87 @@ class BeamsMaker {
     return true;
   }
 
+  /// A strut as its node sees it. `widening`: by how much it grows thicker away from there, per length.
   struct Leaving {
     Vec3 direction;
-    double radius;
+    double radius = 0, widening = 0;
   };
 
-  // two cylinders of radius r whose axes meet at the angle theta have left each other at r / sin(theta / 2).
+  // Cones of radius r at a node, that grow by k per length away from it and whose axes meet at the angle theta,
+  // have left each other at the distance r / (sin(theta / 2) - k cos(theta / 2)).
   bool make_automatic_balls() {
     std::vector<std::vector<Leaving>> leaving(shape_.nodes.size());
     for (const Strut& s : shape_.struts) {
       const Vec3 way = shape_.nodes[s.to].position - shape_.nodes[s.from].position;
-      const Vec3 direction = way / norm(way);
-      leaving[s.from].push_back({direction, s.radius_from});
-      leaving[s.to].push_back({-direction, s.radius_to});
+      const double length = norm(way), growth = (s.radius_to - s.radius_from) / length;
+      leaving[s.from].push_back({way / length, s.radius_from, std::max(0.0, growth)});
+      leaving[s.to].push_back({-way / length, s.radius_to, std::max(0.0, -growth)});
     }
     for (std::size_t n = 0; n < leaving.size(); ++n) {
-      double radius = 0;
+      if (leaving[n].empty() || beams_.nodes[n].radius) continue;
+      double& radius = shape_.nodes[n].ball_radius;
+      const std::vector<Vec3> beyond = directions_beyond(n);
       for (std::size_t i = 0; i < leaving[n].size(); ++i) {
-        radius = std::max(radius, leaving[n][i].radius);
+        const Leaving& strut = leaving[n][i];
+        radius = std::max(radius, strut.radius);
         for (std::size_t j = 0; j < i; ++j) {
-          // |a - b| = 2 sin(theta / 2) for unit vectors, exact also for small angles.
-          const double sine = norm(leaving[n][i].direction - leaving[n][j].direction) / 2;
-          if (sine < smallest_sine && !beams_.nodes[n].radius) {
-            report_(Code::body_degenerate, {beams_.nodes[n].id_in_source, {}},
-                    {"two beams leave this node in the same direction, so nodeRadius=\"auto\" has no value"});
-            return false;
-          }
-          radius = std::max(radius, std::max(leaving[n][i].radius, leaving[n][j].radius) / sine);
+          const Leaving& other = leaving[n][j];
+          const Leaving larger{strut.direction, std::max(strut.radius, other.radius),
+                               std::max(strut.widening, other.widening)};
+          if (!part_at(n, larger, other.direction, radius)) return false;
         }
+        for (const Vec3& direction : beyond)
+          // A strut in a wall is the neighbour's, too.
+          if (norm(direction - strut.direction) / 2 >= smallest_sine && !part_at(n, strut, direction, radius))
+            return false;
       }
-      shape_.nodes[n].ball_radius = radius;
     }
     return true;
+  }
+
+  /// Raises `radius` to where a strut has left one that leaves its node along `direction`.
+  bool part_at(std::size_t node, const Leaving& strut, Vec3 direction, double& radius) const {
+    // |a - b| = 2 sin(theta / 2), |a + b| = 2 cos(theta / 2) for unit vectors, exact also for small angles.
+    const double sine = norm(strut.direction - direction) / 2, cosine = norm(strut.direction + direction) / 2;
+    const double opening = sine - strut.widening * cosine;
+    if (opening < smallest_sine) {
+      report_(Code::body_degenerate, {beams_.nodes[node].id_in_source, {}},
+              {sine < smallest_sine
+                   ? "two beams leave this node in the same direction, so nodeRadius=\"auto\" has no value"
+                   : "two beams grow thicker away from this node faster than they part, so nodeRadius=\"auto\" has no "
+                     "value"});
+      return false;
+    }
+    radius = std::max(radius, strut.radius / opening);
+    return true;
+  }
+
+  /// Where the struts of neighbouring cells leave a node in a wall of the box, if those are like this one. Their radii
+  /// do not matter: they make balls of their own.
+  [[nodiscard]] std::vector<Vec3> directions_beyond(std::size_t node) const {
+    std::vector<Vec3> directions;
+    if (!rules_.period) return directions;
+    const Vec3 size = rules_.period->size / data_.millimeters();
+    for (std::size_t other = 0; other < unplaced_.size(); ++other) {
+      Vec3 shift;
+      bool is_same = true, is_here = true;
+      for (std::size_t a = 0; a < 3; ++a) {
+        const double boxes = (unplaced_[node][a] - unplaced_[other][a]) / size[a], whole = std::nearbyint(boxes);
+        is_same = is_same && std::fabs(boxes - whole) <= 1e-9 && std::fabs(whole) <= 1;
+        is_here = is_here && whole == 0;
+        shift[a] = whole * size[a];
+      }
+      if (!is_same || is_here) continue;
+      for (const Strut& s : shape_.struts)
+        for (const auto& [near, far] : {std::pair{s.from, s.to}, {s.to, s.from}}) {
+          if (near != other) continue;
+          Vec3 end = unplaced_[far] + shift;
+          if (rules_.position) end = rules_.position(end);
+          const Vec3 way = data_.millimeters() * end - shape_.nodes[node].position;
+          if (norm(way) > 0) directions.push_back(way / norm(way));
+        }
+    }
+    return directions;
   }
 
   static constexpr double smallest_sine = 1e-6;
@@ -125,6 +176,7 @@ class BeamsMaker {
   const NodeRules& rules_;
   std::map<std::string, std::size_t> node_position_;
   std::vector<std::vector<double>> node_slots_;
+  std::vector<Vec3> unplaced_;  ///< the nodes in cell coordinates, in the document's unit
   BeamsShape shape_;
 };
 

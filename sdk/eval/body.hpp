@@ -41,6 +41,8 @@ struct NodeRules {
   /// The slots for the expressions of a node that stands at `position(p)`; false if something was reported. Absent:
   /// the same everywhere.
   std::function<bool(Vec3 placed, std::vector<double>& slots)> slots{};
+  /// The cell's box in millimetres: beyond each wall the struts of a neighbour like this cell go on.
+  std::optional<BoxShape> period{};
 };
 
 [[nodiscard]] std::optional<Shape> make_shape(const EvaluationData& data, const BodyTable& table,

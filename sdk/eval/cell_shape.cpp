@@ -37,12 +37,17 @@ Report report_at(const CellStream::Impl& impl, const PlacedCell& cell, Diagnosti
   return report;
 }
 
+bool has_automatic_balls(const UnitCell& cell) {
+  const auto* beams = std::get_if<BeamsBody>(&cell.body);
+  return beams != nullptr && beams->node_radius && beams->node_radius->text == "auto";
+}
+
 /// node sets see the place where the node ends up.
 NodeRules node_rules(const CellStream::Impl& impl, const PlacedCell& cell, const std::vector<double>& slots,
                      const std::optional<BoxShape>& box, const Report& report) {
   const PatternProgram& program = *impl.program;
   const double scale = impl.data().millimeters();
-  NodeRules rules;
+  NodeRules rules{.period = box};
   if (impl.is_conformal())
     rules.position = [&, scale](Vec3 p) { return map_point(*impl.frame_mm, cell, *box, scale * p) / scale; };
   if (program.node_statements.empty()) return rules;
@@ -92,12 +97,12 @@ std::optional<Shape> CellStream::shape(const PlacedCell& cell, DiagnosticSink& s
     return std::nullopt;
   }
   const std::vector<double> slots = slots_of(program, cell);
+  if (impl_->is_conformal() && !program.cell->box) {
+    report(Code::box_needed, {program.cell->id_in_source, {}}, {program.cell->id.text, "conformal mapping bends it"});
+    return std::nullopt;
+  }
   std::optional<BoxShape> box;
-  if (impl_->is_conformal()) {
-    if (!program.cell->box) {
-      report(Code::box_needed, {program.cell->id_in_source, {}}, {program.cell->id.text, "conformal mapping bends it"});
-      return std::nullopt;
-    }
+  if (program.cell->box && (impl_->is_conformal() || has_automatic_balls(*program.cell))) {
     box = make_box(impl_->data(), impl_->body, *program.cell->box, slots, report);
     if (!box) return std::nullopt;
   }

@@ -6,8 +6,9 @@
 //   auto evaluation = eval::Evaluation::make(checked, {}, sink);
 //   if (auto made = brep::realise_build(*evaluation, {}, {}, sink)) write_step(made->body, ...);
 //
-// Three ways lead to a body, the first that fits is taken: a lattice of boxes side by side becomes one repeated
-// template, clipped where the macrostructure's boundary crosses it ("lattice"); cells that keep clear of the
+// Four ways lead to a body, the first that fits is taken: a lattice of boxes side by side becomes one repeated
+// template, clipped where the macrostructure's boundary crosses it ("lattice"); beams whose struts all end within the
+// balls of their nodes are put together from whole balls, cylinders and cones ("beamGraph"); cells that keep clear of the
 // macrostructure's boundary and of each other become solids or voids of their own ("cells"); what is left is joined by
 // general booleans, each checked ("boolean"). A part without steps is its macrostructure ("direct").
 //
@@ -54,7 +55,7 @@ struct Realisation {
   Body body;
   CellCounts cells;
   ClipCounts clip;
-  std::string way;  ///< "direct", "lattice", "cells" or "boolean"; the last that was needed
+  std::string way;  ///< "direct", "lattice", "beamGraph", "cells" or "boolean"; the last that was needed
   double evaluate_seconds = 0, realise_seconds = 0;
 };
 

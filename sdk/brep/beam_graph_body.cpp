@@ -1,0 +1,354 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "beam_graph_body.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <numbers>
+
+#include "beam_graph_rings.hpp"
+#include "beam_graph_sphere.hpp"
+#include "ellipsoid.hpp"
+#include "lattice/parallel.hpp"
+#include "lattice/union_find.hpp"
+#include "meso/base/number.hpp"
+#include "occt.hpp"
+
+namespace meso::brep {
+namespace {
+
+constexpr double pi = std::numbers::pi;
+
+Vec3 unit(Vec3 v) { return v / norm(v); }
+
+/// Of a cone about `axis` from `from` on, all around: Gauss's rule along it, exact for these powers.
+FaceMoments cone_moments(Vec3 from, Vec3 axis, double length, double first, double second) {
+  constexpr std::array<double, 3> node{-0.7745966692414834, 0, 0.7745966692414834};
+  constexpr std::array<double, 3> weight{5.0 / 9, 8.0 / 9, 5.0 / 9};
+  const double growth = (second - first) / length;
+  FaceMoments m{.area = pi * (first + second) * std::hypot(length, second - first)};
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double s = length / 2 * (1 + node[k]), r = first + growth * s, ds = weight[k] * length / 2 * 2 * pi * r;
+    for (std::size_t i = 0; i < 3; ++i) {
+      // Means around the circle: the normal's part along the axis, and half of what is across it.
+      const double a = from[i] + s * axis[i], d = -growth * axis[i], half = (1 - axis[i] * axis[i]) / 2;
+      m.vector_area[i] += d * ds;
+      m.volume_moment[i] += (a * d + r * half) * ds;
+      m.centroid_moment[i] += ((a * a + r * r * half) * d / 2 + a * r * half) * ds;
+    }
+  }
+  return m;
+}
+
+double cap_volume(double ball, double height) { return pi * height * height * (ball - height / 3); }
+double ball_volume(double radius) { return 4 * pi / 3 * radius * radius * radius; }
+
+class BeamBody {
+ public:
+  BeamBody(const Joints& joints, const LatticeOptions& options)
+      : joints_(joints), graph_(joints.graph), options_(options), rings_(joints, *geometry_) {}
+
+  /// False: the run was to stop.
+  bool make_faces() {
+    UnionFind sets(static_cast<std::uint32_t>(graph_.nodes.size()));
+    for (const BeamGraph::Strut& s : graph_.struts) sets.join(s.node[0], s.node[1]);
+    for (std::uint32_t n = 0; n < graph_.nodes.size(); ++n) {
+      if (n % 1024 == 0 && options_.run.should_stop()) return false;
+      if (joints_.leaving[n].empty() && graph_.nodes[n].radius == 0) continue;
+      solids_.resize(std::max<std::size_t>(solids_.size(), sets.root(n) + 1));
+      faces_of_ = &solids_[sets.root(n)];
+      if (joints_.leaving[n].empty())
+        add_ball(n);
+      else if (!joints_.is_straight[n])
+        add_faces_of_ball(n);
+    }
+    for (std::uint32_t s = 0; s < graph_.struts.size(); ++s) {
+      faces_of_ = &solids_[sets.root(graph_.struts[s].node[0])];
+      if (!joints_.is_swallowed[s]) add_strut(s);
+    }
+    return true;
+  }
+
+  /// False: the circles are divided too coarsely, or the run was to stop.
+  bool make_mesh(const MeshFineness& fineness) {
+    return in_parallel(geometry_->faces.size(), options_.run, [&](std::size_t, std::size_t f) {
+      FaceTemplate& face = geometry_->faces[f];
+      if (const auto* sphere = std::get_if<SphereSurface>(&face.surface)) {
+        if (auto mesh = mesh_of(*sphere, face, fineness)) face.mesh = std::move(*mesh);
+        return !face.mesh.triangles.empty();
+      }
+      face.mesh = mesh_of_strut(strut_of_face_[f], fineness);
+      return true;
+    });
+  }
+
+  Body finish() {
+    Body body;
+    for (auto& faces : solids_) {
+      if (faces.empty()) continue;
+      const auto visit = [list = std::make_shared<const std::vector<std::uint32_t>>(std::move(faces))](
+                             const std::function<void(const FaceInstance&)>& callback) {
+        for (const std::uint32_t face : *list) callback({face, {0, 0, 0}});
+      };
+      body.solids.push_back({Shell{geometry_, {}, visit}, {}});
+    }
+    body.pieces_volume = pieces_volume();
+    return body;
+  }
+
+ private:
+  [[nodiscard]] Vec3 at(std::uint32_t node) const { return graph_.nodes[node].position; }
+
+  void add(FaceTemplate face, std::uint32_t strut) {
+    faces_of_->push_back(static_cast<std::uint32_t>(geometry_->faces.size()));
+    geometry_->faces.push_back(std::move(face));
+    strut_of_face_.push_back(strut);
+  }
+
+  void add_strut(std::uint32_t s) {
+    const Ring &first = rings_.ring(2 * s), &second = rings_.ring(2 * s + 1);
+    const Rings::Seam& seam = rings_.seam(s);
+    const Vec3 axis = joints_.direction(2 * s), from = first.frame.origin, to = second.frame.origin;
+    const double length = norm(to - from);
+    FaceTemplate face;
+    const double growth = graph_.struts[s].radius[1] - graph_.struts[s].radius[0];
+    const double half_angle = std::atan(std::fabs(second.radius - first.radius) / length);
+    if (growth == 0)
+      face.surface = CylinderSurface{{from, axis, seam.direction}, first.radius};
+    else if (growth > 0)
+      face.surface = ConeSurface{{from, axis, seam.direction}, first.radius, half_angle};
+    else
+      face.surface = ConeSurface{{to, -axis, seam.direction}, second.radius, half_angle};
+    std::vector<Coedge>& loop = face.loops.emplace_back(rings_.around(2 * s, seam.vertex[0]));
+    loop.push_back({.edge = seam.edge});
+    for (const Coedge& use : rings_.around(2 * s + 1, seam.vertex[1])) loop.push_back(use);
+    loop.push_back({.edge = seam.edge, .reversed = true});
+    face.moments = cone_moments(from, axis, length, first.radius, second.radius);
+    for (const Ring* ring : {&first, &second}) {
+      Vec3 reach;
+      for (std::size_t i = 0; i < 3; ++i) reach[i] = ring->radius * std::sqrt(std::max(0.0, 1 - axis[i] * axis[i]));
+      face.box.extend(ring->frame.origin - reach);
+      face.box.extend(ring->frame.origin + reach);
+    }
+    add(std::move(face), s);
+  }
+
+  void add_faces_of_ball(std::uint32_t node) {
+    const Vec3 centre = at(node);
+    const double radius = graph_.nodes[node].radius;
+    std::vector<Coedge> coedges;  // by id of the arc
+    const std::vector<SphereCircle> circles = circles_of(node, coedges);
+    for (const std::vector<SphereLoop>& loops : sphere_faces(circles)) {
+      FaceTemplate face{.surface = SphereSurface{clear_axes(centre, loops, axes_), radius}};
+      for (const SphereLoop& loop : loops) {
+        auto& uses = face.loops.emplace_back();
+        for (const SphereArc& arc : loop) uses.push_back(coedges[arc.id]);
+      }
+      if (coedges.size() == 1) add_seam(node, joints_.direction(joints_.leaving[node][0]), face);
+      face.moments = sphere_moments(centre, radius, loops);
+      face.box = box_of(node);
+      add(std::move(face), 0);
+    }
+  }
+
+  /// A sphere with one circle: readers know it by a seam from the circle to the pole across.
+  void add_seam(std::uint32_t node, Vec3 axis, FaceTemplate& face) {
+    const double r = graph_.nodes[node].radius;
+    const std::uint32_t start = geometry_->edges[face.loops[0][0].edge].vertex[0];
+    const Vec3 x = unit(geometry_->vertices[start] - at(node)), side = unit(x - dot(x, axis) * axis);
+    const auto pole = static_cast<std::uint32_t>(geometry_->vertices.size());
+    const auto seam = static_cast<std::uint32_t>(geometry_->edges.size());
+    geometry_->vertices.push_back(at(node) - r * axis);
+    geometry_->edges.push_back({.curve = Circle{{at(node), unit(cross(side, -axis)), x}, r}, .vertex = {start, pole}});
+    geometry_->edges.push_back({.curve = Line{}, .vertex = {pole, pole}, .degenerate = true});
+    std::get<SphereSurface>(face.surface).frame = {at(node), axis, side};
+    face.loops[0].push_back({.edge = seam});
+    face.loops[0].push_back({.edge = seam + 1});
+    face.loops[0].push_back({.edge = seam, .reversed = true});
+  }
+
+  [[nodiscard]] Box3 box_of(std::uint32_t node) const {
+    const double r = graph_.nodes[node].radius;
+    return {at(node) - Vec3{r, r, r}, at(node) + Vec3{r, r, r}};
+  }
+
+  /// Clockwise about the struts: against the faces of these.
+  std::vector<SphereCircle> circles_of(std::uint32_t node, std::vector<Coedge>& coedges) const {
+    struct Start {
+      std::uint32_t vertex = 0, circle = 0, arc = 0;
+    };
+    std::vector<Start> contacts;
+    std::vector<SphereCircle> circles;
+    std::vector<std::vector<std::uint32_t>> ends;  // vertices, where others touch
+    constexpr std::uint32_t no_contact = ~std::uint32_t{0};
+    for (const Leaving l : joints_.leaving[node]) {
+      const Ring& ring = rings_.ring(l);
+      const auto count = static_cast<std::uint32_t>(ring.marks.size());
+      const bool forward = !rings_.use(l).forward;
+      const auto number = static_cast<std::uint32_t>(circles.size());
+      SphereCircle& circle = circles.emplace_back();
+      ends.emplace_back();
+      for (std::uint32_t i = 0; i < count; ++i) {
+        const std::uint32_t k = forward ? i : (count - i) % count,
+                            next = forward ? (k + 1) % count : (k + count - 1) % count;
+        const Ring::Mark &from = ring.marks[k], &to = ring.marks[next];
+        circle.arcs.push_back({.axis = joints_.direction(l),
+                               .angle = joints_.end(l).angle,
+                               .from = unit(geometry_->vertices[from.vertex] - at(node)),
+                               .to = unit(geometry_->vertices[to.vertex] - at(node)),
+                               .is_whole = count == 1,
+                               .turns_back = to.is_contact,
+                               .id = static_cast<std::uint32_t>(coedges.size())});
+        coedges.push_back({.edge = ring.first_edge + (forward ? k : next), .reversed = !forward});
+        circle.next.push_back({number, (i + 1) % count});
+        ends.back().push_back(to.is_contact ? to.vertex : no_contact);
+        if (from.is_contact) contacts.push_back({from.vertex, number, i});
+      }
+    }
+    for (std::uint32_t c = 0; c < circles.size(); ++c)
+      for (std::size_t a = 0; a < ends[c].size(); ++a)
+        for (const Start& start : contacts)
+          if (start.vertex == ends[c][a] && start.circle != c) circles[c].next[a] = {start.circle, start.arc};
+    return circles;
+  }
+
+  /// No strut ends there: the sphere with its own seam and poles.
+  void add_ball(std::uint32_t node) {
+    const double r = graph_.nodes[node].radius;
+    const Vec3 up{0, 0, r};
+    const auto vertex = static_cast<std::uint32_t>(geometry_->vertices.size());
+    const auto edge = static_cast<std::uint32_t>(geometry_->edges.size());
+    geometry_->vertices.push_back(at(node) - up);
+    geometry_->vertices.push_back(at(node) + up);
+    geometry_->edges.push_back({.curve = Circle{{at(node), {0, -1, 0}, {1, 0, 0}}, r}, .vertex = {vertex, vertex + 1}});
+    for (const std::uint32_t pole : {vertex, vertex + 1})
+      geometry_->edges.push_back({.curve = Line{}, .vertex = {pole, pole}, .degenerate = true});
+    FaceTemplate face{.surface = SphereSurface{{at(node)}, r}};
+    face.loops = {{{.edge = edge + 1}, {.edge = edge}, {.edge = edge + 2}, {.edge = edge, .reversed = true}}};
+    face.moments.area = 4 * pi * r * r;
+    for (std::size_t i = 0; i < 3; ++i) {
+      face.moments.volume_moment[i] = ball_volume(r);
+      face.moments.centroid_moment[i] = at(node)[i] * ball_volume(r);
+    }
+    face.box = box_of(node);
+    add(std::move(face), 0);
+  }
+
+  [[nodiscard]] int sides(const EdgeTemplate& edge, const MeshFineness& fineness) const {
+    const auto* circle = std::get_if<Circle>(&edge.curve);
+    return circle == nullptr ? 1 : sides_of(circle->radius, fineness.deflection, fineness.angle);
+  }
+
+  /// The points of a use of an edge, its end left out.
+  void append_points(const Coedge& use, const MeshFineness& fineness, std::vector<Vec3>& out) const {
+    const EdgeTemplate& edge = geometry_->edges[use.edge];
+    std::vector<Vec3> inner = inner_points(edge, *geometry_, sides(edge, fineness));
+    if (use.reversed) std::ranges::reverse(inner);
+    out.push_back(geometry_->vertices[edge.vertex[use.reversed ? 1 : 0]]);
+    out.insert(out.end(), inner.begin(), inner.end());
+  }
+
+  [[nodiscard]] std::optional<Triangulation> mesh_of(const SphereSurface& sphere, const FaceTemplate& face,
+                                                     const MeshFineness& fineness) const {
+    if (geometry_->edges[face.loops[0][0].edge].degenerate) {  // a ball alone
+      const double r = sphere.radius;
+      const Ellipsoid ball{{Mat3::from_columns({r, 0, 0}, {0, r, 0}, {0, 0, r}), sphere.frame.origin}};
+      return brep::mesh_of(ball, fineness.deflection, fineness.angle);
+    }
+    std::vector<std::vector<Vec3>> loops;
+    std::vector<Vec3> holes;
+    for (const auto& uses : face.loops) {
+      loops.emplace_back();
+      for (const Coedge& use : uses) {
+        if (loops.size() == 1 && uses.size() == 4 && geometry_->edges[uses[2].edge].degenerate && &use != &uses[0])
+          break;  // the seam
+        append_points(use, fineness, loops.back());
+        const Vec3 off = std::get<Circle>(geometry_->edges[use.edge].curve).frame.origin - sphere.frame.origin;
+        if (norm(off) > 1e-6 * sphere.radius) holes.push_back(unit(off));
+      }
+    }
+    return sphere_mesh(sphere, loops, fineness.deflection, fineness.angle, holes);
+  }
+
+  [[nodiscard]] Triangulation mesh_of_strut(std::uint32_t s, const MeshFineness& fineness) const {
+    const Rings::Seam& seam = rings_.seam(s);
+    const Vec3 axis = joints_.direction(2 * s), y = cross(axis, seam.direction);
+    std::array<std::vector<RingPoint>, 2> rings;
+    for (const std::uint32_t end : {0u, 1u}) {
+      std::vector<Vec3> points;
+      for (const Coedge& use : rings_.around(2 * s + end, seam.vertex[end])) append_points(use, fineness, points);
+      // The second ring runs the other way about the axis.
+      if (end == 1) std::reverse(points.begin() + 1, points.end());
+      for (const Vec3& p : points) {
+        const Vec3 v = p - at(graph_.struts[s].node[0]);
+        const double turn = std::atan2(dot(v, y), dot(v, seam.direction));
+        rings[end].push_back({p, rings[end].empty() ? 0 : turn < 0 ? turn + 2 * pi : turn});
+      }
+      rings[end].push_back({points.front(), 2 * pi});
+    }
+    return strut_mesh(rings[0], rings[1]);
+  }
+
+  [[nodiscard]] double pieces_volume() const {
+    long double sum = 0;
+    for (std::uint32_t n = 0; n < graph_.nodes.size(); ++n) {
+      const double ball = graph_.nodes[n].radius;
+      if (ball == 0) continue;
+      sum += ball_volume(ball);
+      for (const Leaving l : joints_.leaving[n]) sum -= cap_volume(ball, ball - joints_.end(l).along);
+    }
+    for (std::uint32_t s = 0; s < graph_.struts.size(); ++s) {
+      if (joints_.is_swallowed[s]) continue;
+      const auto& [a, b] = joints_.ends[s];
+      const double length = norm(at(graph_.struts[s].node[1]) - at(graph_.struts[s].node[0])) - a.along - b.along;
+      sum += pi * length / 3 * (a.radius * a.radius + a.radius * b.radius + b.radius * b.radius);
+    }
+    return static_cast<double>(sum);
+  }
+
+  const Joints& joints_;
+  const BeamGraph& graph_;
+  const LatticeOptions& options_;
+  std::shared_ptr<Template> geometry_ = std::make_shared<Template>();
+  Rings rings_;
+  std::vector<std::uint32_t> strut_of_face_;
+  std::vector<std::vector<std::uint32_t>> solids_;  ///< their faces, by the first node
+  std::vector<std::uint32_t>* faces_of_ = nullptr;
+  AxisFrame axes_;
+};
+
+/// Vertices, edges and faces as they are stored, with the division of circles that automatic balls bring.
+bool fits_in_memory(const BeamGraph& graph, const LatticeOptions& options, DiagnosticSink& sink) {
+  const std::uint64_t of_strut = 8 * sizeof(EdgeTemplate) + 3 * sizeof(FaceTemplate);
+  const std::uint64_t need = graph.struts.size() * of_strut * (options.mesh ? 2 : 1),
+                      budget = options.run.max_memory_bytes;
+  if (need <= budget) return true;
+  sink.report({.code = Code::limit_memory, .args = {std::to_string(budget >> 20) + " MiB"}});
+  return false;
+}
+
+}  // namespace
+
+std::optional<Body> beam_graph_body(const Joints& joints, const LatticeOptions& options, DiagnosticSink& sink) {
+  if (!fits_in_memory(joints.graph, options, sink)) return {};
+  const auto stopped = [&] {
+    if (!options.run.should_stop()) return false;
+    sink.report({.code = options.run.out_of_time() ? Code::limit_time : Code::cancelled});
+    return true;
+  };
+  BeamBody body(joints, options);
+  if (!body.make_faces()) return stopped(), std::nullopt;
+  if (options.mesh) {
+    constexpr int most_attempts = 5;
+    MeshFineness fineness = *options.mesh;
+    for (int attempt = 1; !body.make_mesh(fineness); ++attempt) {
+      if (stopped()) return {};
+      if (attempt == most_attempts) throw Standard_Failure("the circles of a ball could not be divided finely enough");
+      fineness.deflection /= 3;
+      fineness.angle /= 1.6;
+    }
+  }
+  return body.finish();
+}
+
+}  // namespace meso::brep

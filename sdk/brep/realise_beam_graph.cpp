@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "realise_beam_graph.hpp"
+
+#include <cmath>
+
+#include "beam_graph_body.hpp"
+#include "meso/base/number.hpp"
+#include "meso/brep/measure.hpp"
+
+namespace meso::brep {
+namespace {
+
+const BeamsBody* beams_of(const eval::CellStream& cells) { return std::get_if<BeamsBody>(&cells.unit_cell().body); }
+
+}  // namespace
+
+bool may_be_beam_graph(const eval::CellStream& cells) {
+  return beams_of(cells) != nullptr && !cells.unit_cell().clip_to_box.value_or(false);
+}
+
+bool has_touching_circles(const eval::CellStream& cells) {
+  const BeamsBody* beams = beams_of(cells);
+  return beams != nullptr && beams->node_radius && beams->node_radius->text == "auto";
+}
+
+std::optional<BeamGraphPart> beam_graph_part(const eval::CellStream& cells, ElementId where,
+                                             const LatticeOptions& options, const SolidContext& context) {
+  SnappedRadii snapped;
+  std::string why;
+  auto graph = beam_graph(cells, snapped, why, context);
+  const std::uint64_t kept = graph ? graph->cells : 0;
+  const auto joints = graph ? joints_of(std::move(*graph), snapped, why) : std::nullopt;
+  if (!joints) {
+    if (!why.empty()) context.report(Code::geometry_struts_meet, where, {why});
+    return {};
+  }
+  auto body = beam_graph_body(*joints, options, context.sink);
+  if (!body) return {};
+  const double volume = measure(*body).volume;
+  if (!(std::fabs(volume - body->pieces_volume) <= 1e-7 * body->pieces_volume)) {
+    context.report(Code::geometry_struts_meet, where,
+                   {"faces enclose " + format_number(volume) + " mm3, balls and struts hold " +
+                    format_number(body->pieces_volume)});
+    return {};
+  }
+  if (snapped.count > 0)
+    context.report(Code::geometry_radii_snapped, where, {std::to_string(snapped.count), format_number(snapped.most)});
+  return BeamGraphPart{std::move(*body), kept};
+}
+
+}  // namespace meso::brep

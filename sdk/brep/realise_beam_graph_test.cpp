@@ -1,0 +1,239 @@
+// SPDX-License-Identifier: Apache-2.0
+// Beams put together from whole balls, cylinders and cones. Truths: closed forms, the periodic engine, triangles.
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <tuple>
+
+#include "meso/brep/triangles.hpp"
+#include "realise_fixture.hpp"
+
+namespace meso::brep {
+namespace {
+
+constexpr double pi = std::numbers::pi;
+
+class BeamGraphTest : public RealiseTest {
+ protected:
+  bool was_told(Code code) const {
+    for (const Diagnostic& d : sink_.diagnostics())
+      if (d.code == code) return true;
+    return false;
+  }
+};
+
+std::string cell(const std::string& inside) {
+  return "<unitCells><unitCell id='u'>" + inside + "</unitCell></unitCells>";
+}
+std::string union_of(const std::string& generator, const std::string& attributes = "") {
+  return "<patterns><pattern id='a' unitCell='u' " + attributes + ">" + generator + "</pattern></patterns>" +
+         part("<apply pattern='a' operation='union'/>", false);
+}
+const std::string once = "<loop index='i' axis='x' count='1' spacing='1'/>";
+
+std::string node(const std::string& id, const std::string& x, const std::string& y, const std::string& z) {
+  return "<node id='" + id + "' x='" + x + "' y='" + y + "' z='" + z + "'/>";
+}
+std::string beam(const std::string& from, const std::string& to) {
+  return "<beam from='" + from + "' to='" + to + "'/>";
+}
+
+/// Corners to the centre of a box of edge 5.
+std::string bcc(const std::string& radius, const std::string& ball) {
+  std::string nodes = node("c", "2.5", "2.5", "2.5"), beams;
+  for (int k = 0; k < 8; ++k) {
+    const std::string id = "n" + std::to_string(k);
+    nodes += node(id, k & 1 ? "5" : "0", k & 2 ? "5" : "0", k & 4 ? "5" : "0");
+    beams += beam(id, "c");
+  }
+  return cell("<parameter id='r' value='" + radius + "'/><box dx='5' dy='5' dz='5'/><beams radius='r' nodeRadius='" +
+              ball + "'>" + nodes + beams + "</beams>");
+}
+std::string block(int n, const std::string& set) {
+  std::string loops;
+  for (const char* axis : {"x", "y", "z"})
+    loops += std::string("<loop index='") + axis[0] + "i' axis='" + axis + "' count='" + std::to_string(n) +
+             "' spacing='5'/>";
+  return union_of(loops + set);
+}
+
+/// Every side of a triangle is a side of one other, bit for bit, the other way round.
+bool is_watertight(const Body& body) {
+  using Point = std::tuple<float, float, float>;
+  std::map<std::pair<Point, Point>, int> sides;
+  const auto rounded = [](Vec3 p) {
+    return Point(static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z));
+  };
+  visit_triangles(body, [&](std::span<const Triangle> triangles) {
+    for (const Triangle& t : triangles)
+      for (std::size_t k = 0; k < 3; ++k) {
+        const Point a = rounded(t[k]), b = rounded(t[(k + 1) % 3]);
+        if (a < b) ++sides[{a, b}];
+        if (b < a) --sides[{b, a}];
+      }
+  });
+  for (const auto& [side, sum] : sides)
+    if (sum != 0) return false;
+  return !sides.empty();
+}
+
+double volume_of_triangles(const Body& body) {
+  double sum = 0;
+  visit_triangles(body, [&](std::span<const Triangle> triangles) {
+    for (const Triangle& t : triangles) sum += dot(t[0], cross(t[1], t[2])) / 6;
+  });
+  return sum;
+}
+
+void expect_triangles(const Body& body, double within) {
+  EXPECT_TRUE(is_watertight(body));
+  EXPECT_NEAR(volume_of_triangles(body) / measure(body).volume, 1, within);
+}
+
+TEST_F(BeamGraphTest, AStrutWithRoundEndsIsACapsule) {
+  const auto made = realised(cell("<beams radius='0.5' nodeRadius='auto'>" + node("a", "0", "0", "0") +
+                                  node("b", "1", "2", "2") + beam("a", "b") + "</beams>") +
+                                 union_of(once),
+                             {.mesh = true, .deflection_mm = 0.001});
+  expect_body(made, "beamGraph", pi * 0.25 * 3 + 4 * pi / 3 * 0.125);
+  EXPECT_NEAR(measure(made->body).centroid.z, 1, 1e-12);
+  EXPECT_NEAR(measure(made->body).area, 2 * pi * 0.5 * 3 + 4 * pi * 0.25, 1e-12);
+  expect_triangles(made->body, 0.01);
+}
+
+TEST_F(BeamGraphTest, StrutsInARowShareACircleAndNoBall) {
+  const auto made = realised(cell("<beams radius='0.5' nodeRadius='auto'>" + node("a", "0", "0", "0") +
+                                  node("b", "3", "0", "0") + beam("a", "b") + "</beams>") +
+                                 union_of("<loop index='i' axis='x' count='4' spacing='3'/>"),
+                             {.mesh = true, .deflection_mm = 0.001});
+  expect_body(made, "beamGraph", pi * 0.25 * 12 + 4 * pi / 3 * 0.125);
+  EXPECT_EQ(measure(made->body).faces, 6u);  // four struts, two round ends
+  expect_triangles(made->body, 0.01);
+}
+
+TEST_F(BeamGraphTest, SwallowedStrutsLeaveBallsThatMeet) {
+  const auto lens = realised(cell("<parameter id='r' value='0.5'/><beams radius='r' nodeRadius='2'>" +
+                                  node("a", "0", "0", "0") + node("b", "3", "0", "0") + beam("a", "b") + "</beams>") +
+                                 union_of(once),
+                             {.mesh = true, .deflection_mm = 0.001});
+  const double cap = pi * 0.25 * (2 - 0.5 / 3);
+  expect_body(lens, "beamGraph", 2 * (4 * pi / 3 * 8 - cap));
+  expect_triangles(lens->body, 0.01);
+}
+
+TEST_F(BeamGraphTest, AConstantGradientIsThePeriodicLattice) {
+  const std::string chain = cell(
+      "<parameter id='r' value='0.5'/><box dx='5' dy='5' dz='5'/><beams radius='r' "
+      "nodeRadius='0.9'>" +
+      node("a", "0", "2.5", "2.5") + node("b", "5", "2.5", "2.5") + beam("a", "b") + "</beams>");
+  const std::string loop = "<loop index='i' axis='x' count='4' spacing='5'/>";
+  const auto graph = realised(chain + union_of(loop + "<set parameter='r' value='0.5 + 0*i'/>"));
+  const auto lattice = realised(chain + union_of(loop));
+  ASSERT_TRUE(graph && lattice);
+  EXPECT_EQ(graph->way, "beamGraph");
+  EXPECT_EQ(lattice->way, "lattice");
+  const Measures a = measure(graph->body), b = measure(lattice->body);
+  EXPECT_NEAR(a.volume / b.volume, 1, 1e-9);
+  EXPECT_NEAR(a.area / b.area, 1, 1e-9);
+  EXPECT_NEAR(norm(a.centroid - b.centroid), 0, 1e-7);
+  EXPECT_TRUE(audit(graph->body).clean());
+}
+
+TEST_F(BeamGraphTest, AutomaticBallsTouchInPointsAndAreDividedThere) {
+  const auto made = realised(bcc("0.5", "auto") + block(2, ""), {.mesh = true, .deflection_mm = 0.01});
+  ASSERT_TRUE(made);
+  EXPECT_EQ(made->way, "beamGraph");
+  EXPECT_TRUE(audit(made->body).clean());
+  EXPECT_NEAR(measure(made->body).volume / made->body.pieces_volume, 1, 1e-12);
+  // 64 struts; six faces at each of the 8 middle nodes and the inner one, two where four struts meet, else one.
+  EXPECT_EQ(measure(made->body).faces, 64u + 9 * 6 + 6 * 2 + 12 + 8);
+  expect_triangles(made->body, 0.05);
+}
+
+TEST_F(BeamGraphTest, GradedLatticesCloseWhateverTheGradient) {
+  for (const std::string set :
+       {"value='0.3 + 0.05*xi + 0.02*yi*zi'", "value='0.3 + 0.01*global.x + 0.02*global.z' at='node'",
+        "value='0.4 + 0.1*sin(global.x + 2*global.y)' at='node'"}) {
+    const auto made = realised(bcc("0.5", "auto") + block(3, "<set parameter='r' " + set + "/>"),
+                               {.mesh = true, .deflection_mm = 0.01});
+    ASSERT_TRUE(made) << set;
+    EXPECT_EQ(made->way, "beamGraph");
+    EXPECT_EQ(made->body.solids.size(), 1u);
+    EXPECT_TRUE(audit(made->body).clean());
+    EXPECT_NEAR(measure(made->body).volume / made->body.pieces_volume, 1, 1e-12);
+    expect_triangles(made->body, 0.05);
+  }
+}
+
+TEST_F(BeamGraphTest, RadiiThatNearlyPartStrutsAreSnappedAndTold) {
+  const std::string corner = node("a", "0", "0", "0") + "<node id='b' x='4' y='0' z='0' radius='0.5'/>" +
+                             "<node id='c' x='0' y='4' z='0' radius='0.5'/>" + beam("a", "b") + beam("a", "c") +
+                             "</beams>";
+  const double exact = 0.5 * std::sqrt(2.0);
+  const auto nearly = realised(
+      cell("<beams radius='0.5' nodeRadius='" + std::to_string(exact * (1 - 1e-5)) + "'>" + corner) + union_of(once));
+  ASSERT_TRUE(nearly);
+  EXPECT_EQ(nearly->way, "beamGraph");
+  EXPECT_TRUE(was_told(Code::geometry_radii_snapped));
+  const auto precise = realised(cell("<beams radius='0.5' nodeRadius='auto'>" + corner) + union_of(once));
+  ASSERT_TRUE(precise);
+  EXPECT_FALSE(was_told(Code::geometry_radii_snapped));
+  EXPECT_NEAR(measure(nearly->body).volume / measure(precise->body).volume, 1, 1e-4);
+}
+
+TEST_F(BeamGraphTest, SmallerBallsKeepTheirShapeByBooleans) {
+  const auto made =
+      realised(cell("<beams radius='0.5' nodeRadius='0.6'>" + node("a", "0", "0", "0") + node("b", "4", "0", "0") +
+                    node("c", "0", "4", "0") + beam("a", "b") + beam("a", "c") + "</beams>") +
+               union_of(once));
+  ASSERT_TRUE(made);
+  EXPECT_NE(made->way, "beamGraph");
+  EXPECT_TRUE(was_told(Code::geometry_struts_meet));
+}
+
+TEST_F(BeamGraphTest, StrutsThatCrossAwayFromNodesAreNotAGraph) {
+  const auto made = realised(cell("<beams radius='0.5' nodeRadius='auto'>" + node("a", "0", "0", "0") +
+                                  node("b", "4", "4", "0") + node("c", "0", "4", "0") + node("d", "4", "0", "0") +
+                                  beam("a", "b") + beam("c", "d") + "</beams>") +
+                             union_of(once));
+  EXPECT_TRUE(was_told(Code::geometry_struts_meet));
+  EXPECT_TRUE(!made || made->way != "beamGraph");
+}
+
+std::string tube(const std::string& ball) {
+  return "<coordinateSystems><coordinateSystem id='polar'><axis name='rho' kind='distance' x='1'/><axis name='phi' "
+         "kind='circular' z='1'/><axis name='h' kind='linear' z='1'/></coordinateSystem></coordinateSystems>" +
+         bcc("0.4", ball) +
+         union_of(
+             "<loop index='i' axis='rho' count='2' start='15' spacing='4'/>"
+             "<loop index='j' axis='phi' count='24' spacing='15deg'/>"
+             "<loop index='k' axis='h' count='2' spacing='4'/>",
+             "coordinateSystem='polar' mapping='conformal'");
+}
+
+TEST_F(BeamGraphTest, ATrussBendsIntoATube) {
+  const auto made = realised(tube("auto"), {.mesh = true, .deflection_mm = 0.02});
+  ASSERT_TRUE(made);
+  EXPECT_EQ(made->way, "beamGraph");
+  EXPECT_EQ(made->body.solids.size(), 1u);
+  EXPECT_TRUE(audit(made->body).clean());
+  EXPECT_NEAR(measure(made->body).volume / made->body.pieces_volume, 1, 1e-12);
+  EXPECT_NEAR(norm(measure(made->body).centroid - Vec3{0, 0, 4}), 0, 1e-9);
+  expect_triangles(made->body, 0.05);
+}
+
+TEST_F(BeamGraphTest, TrianglesDoNotDependOnThreads) {
+  const auto triangles = [&](unsigned jobs) {
+    const auto made = realised(tube("auto"), {.mesh = true, .deflection_mm = 0.05, .run = {.jobs = jobs}});
+    std::vector<Triangle> all;
+    if (made)
+      visit_triangles(made->body, [&](std::span<const Triangle> t) { all.insert(all.end(), t.begin(), t.end()); });
+    return all;
+  };
+  const auto one = triangles(1);
+  EXPECT_FALSE(one.empty());
+  EXPECT_EQ(one, triangles(3));
+}
+
+}  // namespace
+}  // namespace meso::brep
