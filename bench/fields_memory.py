@@ -48,13 +48,18 @@ def document(external, pattern):
 
 
 def own_mebibytes(process):
+    """Of a process and those that it started."""
+    total = 0
     try:
         for line in open(f"/proc/{process}/status", encoding="ascii"):
             if line.startswith("RssAnon:"):
-                return int(line.split()[1]) / 1024
+                total += int(line.split()[1]) / 1024
+        for thread in os.listdir(f"/proc/{process}/task"):
+            for child in open(f"/proc/{process}/task/{thread}/children", encoding="ascii").read().split():
+                total += own_mebibytes(child)
     except OSError:
         pass
-    return 0
+    return total
 
 
 def main():
