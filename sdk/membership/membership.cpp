@@ -38,6 +38,12 @@ Solid without_fragments(Solid body) {
   return {box, [body = std::move(body)](Vec3 p) { return std::min(body.at(p), Answer::unknown); }};
 }
 
+/// Fillets and skins follow distances, which this room does not know: nothing is said about a body that has any.
+Solid undecided(Box3 box, double radius) {
+  if (!box.empty()) box = {box.min - Vec3{radius, radius, radius}, box.max + Vec3{radius, radius, radius}};
+  return {box, [](Vec3) { return Answer::unknown; }};
+}
+
 class PartMaker {
  public:
   PartMaker(const eval::Evaluation& evaluation, const Options& options, DiagnosticSink& sink)
@@ -53,9 +59,19 @@ class PartMaker {
       body = std::move(*macrostructure);
     }
     for (const Apply& apply : part.steps) {
+      Box3 box = body.box;
       auto next = apply.pattern ? with_cells(std::move(body), apply) : with_part(std::move(body), apply);
       if (!next) return {};
       body = std::move(*next);
+      if (apply.radius || apply.skin) {
+        const auto radius = length(apply, "radius", apply.radius);
+        if (!radius) return {};
+        if (!body.box.empty()) {
+          box.extend(body.box.min);
+          box.extend(body.box.max);
+        }
+        body = undecided(box, *radius);
+      }
       if (apply.fragments == FragmentRule::drop && !options_.no_fragments) body = without_fragments(std::move(body));
     }
     return body;
@@ -94,7 +110,7 @@ class PartMaker {
     if (!set) return {};
     ApplyOperation operation = apply.operation;
     if (const BoundaryRule rule = apply.boundary.value_or(BoundaryRule::clip); rule != BoundaryRule::clip) {
-      const auto clearance = clearance_of(apply);
+      const auto clearance = length(apply, "clearance", apply.clearance);
       if (!clearance) return {};
       using Kind = CellSet::Rule::Kind;
       set->take({rule == BoundaryRule::drop_partial ? Kind::inside : Kind::meeting,
@@ -111,9 +127,10 @@ class PartMaker {
     return joined(std::move(body), {box, [cells](Vec3 p) { return cells->at(p); }}, operation);
   }
 
-  std::optional<double> clearance_of(const Apply& apply) {
-    if (!apply.clearance) return 0.0;
-    const auto value = evaluation_.value(*apply.clearance, apply.id_in_source, "clearance", sink_);
+  /// In millimetres; 0 if the attribute is absent.
+  std::optional<double> length(const Apply& apply, std::string_view attribute, const std::optional<Expression>& given) {
+    if (!given) return 0.0;
+    const auto value = evaluation_.value(*given, apply.id_in_source, attribute, sink_);
     if (!value) return {};
     return *value * millimeters_per(evaluation_.document().unit);
   }

@@ -45,6 +45,16 @@ TEST(Membership, Steps) {
                 2000 - (3 * ball - 2 * 5 * pi / 12));
 }
 
+TEST(Membership, FilletsAndSkinsAreNotJudged) {
+  const Membership part = membership_of(block + balls(7, 0) + apply("operation='difference' skin='1'"));
+  EXPECT_EQ(part.at({4, 0, 0}), Answer::unknown);
+  EXPECT_EQ(part.at({10, 0, 4.9}), Answer::unknown);
+  EXPECT_EQ(part.at({10, 0, 6}), Answer::outside);
+  const Membership round = membership_of(block + balls(7, 0) + apply("operation='union' radius='1'"));
+  EXPECT_EQ(round.at({10, 0, 5.9}), Answer::unknown);
+  EXPECT_EQ(round.at({10, 0, 6.1}), Answer::outside);
+}
+
 TEST(Membership, BoundaryRules) {
   const auto intersection = [](const std::string& rule) {
     return membership_of(block + balls(7, 0) + apply("operation='intersection' boundary='" + rule + "'"));

@@ -7,9 +7,9 @@
 //   if (part->at({1, 2, 3}) == Answer::inside) ...
 //   if (part->clear_at({1, 2, 3}, 0.1) != Answer::unknown) ...   // and nothing changes within 0.1 mm along the axes
 //
-// Millimetres, in the part's frame. Unknown: implicit bodies, imports without a reader, volume elements whose system
-// has no inverse here, points in a part whose loose fragments are dropped, and cells of which a boundary rule cannot
-// be decided from points. Boundary rules look at 8 x 8 x 8 points of each cell: a body that enters a cell between them
+// Millimetres, in the part's frame. Unknown: implicit bodies, parts with a fillet or a skin, imports without a reader,
+// volume elements whose system has no inverse here, points in a part whose loose fragments are dropped, and cells of
+// which a boundary rule cannot be decided from points. Boundary rules look at 8 x 8 x 8 points of each cell: a body that enters a cell between them
 // is missed. The answer at a surface itself is left to rounding.
 //
 // Errors: an empty optional and what evaluation reports, LIMIT_CELLS, LIMIT_TIME or CANCELLED. Cost: some 200 bytes a
