@@ -15,6 +15,7 @@ namespace {
 struct Unfinished {
   std::mutex mutex;
   std::vector<std::string> paths;
+  std::function<void(bool is_begun, const std::string& path)> watcher = [](bool, const std::string&) {};
   bool is_over = false;
 };
 
@@ -31,9 +32,15 @@ bool make_unfinished(const std::string& path, const std::function<bool()>& chang
   const std::lock_guard lock(all.mutex);
   if (all.is_over) return errno = ECANCELED, false;
   const bool is_new = std::ranges::find(all.paths, path) == all.paths.end();
-  if (is_new) all.paths.push_back(path);  // before there is anything: this may throw
+  if (is_new) {  // before there is anything: this may throw
+    all.paths.push_back(path);
+    all.watcher(true, path);
+  }
   const bool made = change();
-  if (!made && is_new) all.paths.pop_back();
+  if (!made && is_new) {
+    all.paths.pop_back();
+    all.watcher(false, path);
+  }
   return made;
 }
 
@@ -43,6 +50,7 @@ bool finish_unfinished(const std::string& path, const std::function<bool()>& cha
   if (all.is_over) return errno = ECANCELED, false;
   if (!change()) return false;
   std::erase(all.paths, path);
+  all.watcher(false, path);
   return true;
 }
 
@@ -55,6 +63,10 @@ void remove_unfinished() {
     std::error_code ignored;
     if (::unlink(path.c_str()) != 0 && errno == EISDIR) std::filesystem::remove_all(path, ignored);
   }
+}
+
+void watch_unfinished(std::function<void(bool is_begun, const std::string& path)> watcher) {
+  unfinished().watcher = std::move(watcher);
 }
 
 }  // namespace meso

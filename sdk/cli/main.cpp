@@ -4,12 +4,15 @@
 #include <fmt/core.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <new>
 #include <string_view>
+#include <vector>
 
 #include "run.hpp"
 #include "stop.hpp"
+#include "wall.hpp"
 
 namespace {
 
@@ -67,6 +70,8 @@ int run_verb(meso::cli::Run& run) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  const std::vector<std::string_view> words(argv, argv + argc);
+  meso::cli::stand_behind_wall(std::ranges::find(words, "--json") != words.end());
   meso::cli::watch_stop_signals();
   CLI::App app("Meso: mesostructures as documents. Reads, validates, evaluates, realises and measures them.", "meso");
   app.set_version_flag("--version", MESO_VERSION);

@@ -12,6 +12,7 @@
 #include "meso/expr/expression.hpp"
 #include "meso/package/open_document.hpp"
 #include "stop.hpp"
+#include "wall.hpp"
 
 namespace meso::cli {
 namespace {
@@ -162,6 +163,7 @@ int Run::finish(Json report) {
   if (flags.json && is_first) {
     fmt::print("{}\n", report.dump(2, ' ', false, Json::error_handler_t::replace));
     std::fflush(stdout);
+    tell_wall_answered();
   }
   return code;
 }

@@ -49,19 +49,13 @@ void write_if_ready(int file, std::string_view text) {
     (void)!::write(file, text.data(), std::min<std::size_t>(text.size(), PIPE_BUF));
 }
 
-void explain(Code code) {
-  Diagnostic why{.code = code};
-  if (code == Code::limit_memory) why.args = {most_bytes_text};
-  if (in_json)
-    write_if_ready(STDOUT_FILENO, Json{{"error", error_json(why)}, {"diagnostics", Json::array()}}.dump(2) + "\n");
-  write_if_ready(STDERR_FILENO, "\n" + render(why) + "\n");
-}
-
 [[noreturn]] void end_now(Code code) {
   try {
     const bool is_told = !speaks(Speaker::watch);
     remove_unfinished();
-    if (!is_told) explain(code);
+    Diagnostic why{.code = code};
+    if (code == Code::limit_memory) why.args = {most_bytes_text};
+    if (!is_told) tell_last(why, in_json);
   } catch (...) {  // no memory is left to say why
   }
   ::_exit(info(code).exit_code);
@@ -70,17 +64,6 @@ void explain(Code code) {
 /// As end_now(), but an answer that is being given has another second: it may wait for its reader for ever.
 void end_unless_answering(Code code, Clock::duration late) {
   if (speaker != Speaker::work || late > std::chrono::seconds(1)) end_now(code);
-}
-
-/// Those that whoever started us does not want ignored, as `nohup` and `&` in a script do.
-sigset_t stop_signals() {
-  sigset_t set;
-  sigemptyset(&set);
-  for (const int number : {SIGINT, SIGTERM, SIGHUP}) {
-    struct sigaction inherited {};
-    if (sigaction(number, nullptr, &inherited) == 0 && inherited.sa_handler != SIG_IGN) sigaddset(&set, number);
-  }
-  return set;
 }
 
 /// What RLIMIT_DATA counts: private writable memory. Allocates nothing.
@@ -127,6 +110,26 @@ void wait_for_signals(sigset_t set) {
 }
 
 }  // namespace
+
+sigset_t stop_signals() {
+  sigset_t set;
+  sigemptyset(&set);
+  for (const int number : {SIGINT, SIGTERM, SIGHUP}) {
+    struct sigaction inherited {};
+    if (sigaction(number, nullptr, &inherited) == 0 && inherited.sa_handler != SIG_IGN) sigaddset(&set, number);
+  }
+  return set;
+}
+
+void tell_last(const Diagnostic& why, bool as_json) {
+  if (as_json) {
+    DiagnosticSink sink;
+    sink.report(why);
+    write_if_ready(STDOUT_FILENO,
+                   Json{{"error", error_json(why)}, {"diagnostics", diagnostics_json(sink)}}.dump(2) + "\n");
+  }
+  write_if_ready(STDERR_FILENO, "\n" + render(why) + "\n");
+}
 
 void watch_stop_signals() {
   // Memory may end in a thread of a library, where nobody catches it.

@@ -4,10 +4,19 @@
 // process ends. One that is ignored already (nohup) stays so. An answer that is being given is not cut off but a second
 // later, or by a second signal.
 
+#include <csignal>
 #include <cstdint>
 #include <string>
 
+#include "meso/base/diagnostic.hpp"
+
 namespace meso::cli {
+
+/// SIGINT, SIGTERM and SIGHUP, without those that whoever started us wants ignored, as `nohup` and `&` in a script do.
+[[nodiscard]] sigset_t stop_signals();
+
+/// Why the process ends, as far as a reader takes it at once: a pipe that is full keeps nobody.
+void tell_last(const Diagnostic& why, bool as_json);
 
 /// Call once, before any other thread starts: blocks these signals everywhere and waits for them in a thread of its
 /// own. A file beyond `ulimit -f` is an error of writing from now on, and does not end the process.

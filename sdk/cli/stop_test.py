@@ -244,6 +244,38 @@ class Stopping(unittest.TestCase):
         self.assertEqual(job.returncode, 130, told)
         self.assert_nothing_left()
 
+    def test_a_crash_is_one_diagnostic(self):
+        for number, exit_code, code in ((signal.SIGSEGV, 5, "GEOMETRY_CRASHED"), (signal.SIGABRT, 5, "GEOMETRY_CRASHED"), (signal.SIGKILL, 6, "LIMIT_MEMORY")):
+            for flags in ("", " --json"):
+                with self.subTest(signal=number.name, flags=flags):
+                    job = self.start("convert {d}/many.meso {o}/a.step" + flags)
+                    while job.poll() is None and not any(self.outputs.iterdir()):
+                        time.sleep(0.01)
+                    os.kill(self.worker_of(job), number)
+                    answer, told = job.communicate(timeout=60)
+                    self.assertEqual(job.returncode, exit_code, told)
+                    self.assertEqual(re.findall(r"error ([A-Z_]+)", told.decode()), [code])
+                    if flags:
+                        self.assertEqual(json.loads(answer)["error"]["code"], code)
+                    self.assert_nothing_left()
+
+    def test_the_work_ends_with_who_waits_for_it(self):
+        job = self.start("convert {d}/fuse.meso {o}/a.step")
+        self.wait_until_it_listens(job)
+        time.sleep(0.3)
+        worker = self.worker_of(job)
+        job.kill()
+        job.communicate(timeout=60)
+        began = time.monotonic()
+        while os.path.exists(f"/proc/{worker}") and "zombie" not in pathlib.Path(f"/proc/{worker}/status").read_text():
+            self.assertLess(time.monotonic() - began, SECONDS_TO_STOP + SECONDS_OF_GRACE)
+            time.sleep(0.02)
+        self.assert_nothing_left()
+
+    @staticmethod
+    def worker_of(job):
+        return int(pathlib.Path(f"/proc/{job.pid}/task/{job.pid}/children").read_text().split()[0])
+
     def assert_limit(self, words, flags, says, seconds):
         began = time.monotonic()
         job = self.start(words + " " + flags)

@@ -20,4 +20,8 @@ bool finish_unfinished(const std::string& path, const std::function<bool()>& cha
 /// For the end of the process: removes all that is remembered, folders with what they hold.
 void remove_unfinished();
 
+/// For another process that cleans up where this one cannot: told of every path before it is made, and after it is
+/// finished. Call before there are any.
+void watch_unfinished(std::function<void(bool is_begun, const std::string& path)> watcher);
+
 }  // namespace meso
