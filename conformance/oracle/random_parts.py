@@ -23,7 +23,6 @@ import pathlib
 import random
 import re
 import resource
-import signal
 import subprocess
 import sys
 import tempfile
@@ -176,8 +175,6 @@ class Judge:
         first = (done.stderr.strip().splitlines() or [""])[0]
         if done.returncode == 0:
             return "ok", ""
-        if done.returncode == -signal.SIGXCPU:
-            return "refused", "LIMIT_TIME"
         if done.returncode in REFUSALS:
             return "refused", (re.search(r"(?:error|warning) ([A-Z_]+)", done.stderr) or [None, first])[1]
         failed = []

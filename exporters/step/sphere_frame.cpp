@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <set>
 #include <tuple>
 
 #include "meso/brep/placement.hpp"
@@ -61,23 +60,28 @@ std::vector<Loop> loops_of(const FaceTemplate& face, const Template& geometry, V
   return loops;
 }
 
-bool has_seam(const FaceTemplate& face) {
-  std::set<std::tuple<std::uint32_t, Index3>> seen;
-  for (const auto& loop : face.loops)
-    for (const Coedge& use : loop)
-      if (!seen.insert({use.edge, use.offset}).second) return true;
-  return false;
+/// Of a loop that does not cross the seam: what lies on its left, if the plane of angles is spread out.
+double signed_area(const AxisFrame& frame, const Loop& loop) {
+  const Vec3 y = cross(frame.z, frame.x);
+  const auto around = [&](Vec3 p) { return std::atan2(-dot(p, y), -dot(p, frame.x)); };  // jumps at the seam
+  double area = 0;
+  for (std::size_t i = 0; i < loop.size(); ++i) {
+    const Vec3 p = loop[i], q = loop[(i + 1) % loop.size()];
+    area -= (around(q) - around(p)) * (dot(p, frame.z) + dot(q, frame.z)) / 2;
+  }
+  return area;
 }
 
 struct Clearance {
-  int crossings = 0;  ///< of the seam, without those of loops around a pole
+  int crossings = 0;  ///< of the seam, without those of loops around a pole; or a lonely hole that misses it
   double margin = 2;  ///< sine of the angle between poles or seam and the nearest loop
   friend bool operator<(const Clearance& a, const Clearance& b) {
     return a.crossings != b.crossings ? a.crossings > b.crossings : a.margin < b.margin;
   }
 };
 
-Clearance clearance_of(const AxisFrame& frame, const std::vector<Loop>& loops) {
+// A hole that is a face's only loop is read as the border of its inner side, unless it is around a pole.
+Clearance clearance_of(const AxisFrame& frame, const std::vector<Loop>& loops, bool reversed) {
   const Vec3 y = cross(frame.z, frame.x);
   Clearance found;
   for (const Loop& loop : loops) {
@@ -92,6 +96,7 @@ Clearance clearance_of(const AxisFrame& frame, const std::vector<Loop>& loops) {
     }
     if (crossings == 0) found.margin = std::min(found.margin, beside);
     if (crossings > 1) found.crossings += crossings;
+    if (crossings == 0 && loops.size() == 1 && (signed_area(frame, loop) < 0) != reversed) found.crossings += 2;
   }
   return found;
 }
@@ -115,10 +120,9 @@ std::vector<Vec3> axes_to_try(const AxisFrame& own, const std::vector<Loop>& loo
 
 AxisFrame clear_frame(const SphereSurface& sphere, const FaceTemplate& face, const Template& geometry) {
   const AxisFrame& own = sphere.frame;
-  if (has_seam(face)) return own;
   const std::vector<Loop> loops = loops_of(face, geometry, own.origin);
   AxisFrame best = own;
-  Clearance clearest = clearance_of(own, loops);
+  Clearance clearest = clearance_of(own, loops, face.reversed);
   if (clearest.crossings == 0 && clearest.margin > clear_enough) return own;
   for (const Vec3 z : axes_to_try(own, loops)) {
     const Vec3 beside = std::fabs(z.x) < 0.6 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
@@ -126,7 +130,7 @@ AxisFrame clear_frame(const SphereSurface& sphere, const FaceTemplate& face, con
     for (int a = 0; a < azimuths; ++a) {
       const double angle = 2 * pi * a / azimuths;
       const AxisFrame frame{own.origin, z, std::cos(angle) * x + std::sin(angle) * y};
-      const Clearance clearance = clearance_of(frame, loops);
+      const Clearance clearance = clearance_of(frame, loops, face.reversed);
       if (clearest < clearance) std::tie(best, clearest) = std::tie(frame, clearance);
     }
   }

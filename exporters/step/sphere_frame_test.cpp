@@ -57,5 +57,12 @@ TEST(SphereFrame, StaysWhereItIsClear) {
   EXPECT_EQ(clear_frame(sphere, ball.faces[0], ball).x, sphere.frame.x);
 }
 
+TEST(SphereFrame, TheOnlyHoleIsAroundAPole) {
+  const Vec3 hole{0.6, 0, -0.8};
+  const Template ball = ball_with_holes({hole}, 0.4);
+  const AxisFrame frame = clear_frame(std::get<SphereSurface>(ball.faces[0].surface), ball.faces[0], ball);
+  EXPECT_GT(std::fabs(dot(frame.z, hole)), std::cos(0.4));
+}
+
 }  // namespace
 }  // namespace meso::step

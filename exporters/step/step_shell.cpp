@@ -9,23 +9,31 @@ using namespace brep;
 
 StepId ShellWriter::write_face(const FaceInstance& instance) {
   const FaceTemplate& face = template_.faces[instance.face];
+  const auto* const ball = std::get_if<SphereSurface>(&face.surface);
+  const SphereFace* const sphere = ball == nullptr ? nullptr : &sphere_face(*ball, instance.face);
   bounds_.clear();
-  for (const auto& loop : face.loops) {
+  for (const auto& loop : sphere == nullptr ? face.loops : sphere->loops) {
     const StepId written = write_loop(loop, instance.cell);
     bounds_.push_back(text_.entity("FACE_BOUND", NoName{}, Ref{written}, true));
   }
   pose_.set_cell(instance.cell);
-  const StepId surface = write_surface(instance.face);
+  const StepId surface = sphere == nullptr ? geometry_.surface(face.surface, pose_)
+                                           : geometry_.surface(SphereSurface{sphere->frame, ball->radius}, pose_);
   return text_.entity("ADVANCED_FACE", NoName{}, bounds_, Ref{surface}, !face.reversed);
 }
 
-StepId ShellWriter::write_surface(std::uint32_t face) {
-  const Surface& surface = template_.faces[face].surface;
-  const auto* sphere = std::get_if<SphereSurface>(&surface);
-  if (sphere == nullptr) return geometry_.surface(surface, pose_);
-  if (growing_ != nullptr && !growing_->sphere_frames.contains(face))
-    growing_->sphere_frames[face] = clear_frame(*sphere, template_.faces[face], template_);
-  return geometry_.surface(SphereSurface{known_.sphere_frames.at(face), sphere->radius}, pose_);
+const SphereFace& ShellWriter::sphere_face(const SphereSurface& sphere, std::uint32_t face) {
+  if (growing_ != nullptr && !growing_->spheres.contains(face)) {
+    FaceTemplate plain{.surface = sphere, .reversed = template_.faces[face].reversed};
+    plain.loops = plain_loops(template_.faces[face], template_);
+    if (plain.loops.empty()) {
+      growing_->spheres[face] = {template_.faces[face].loops, sphere.frame};
+    } else {
+      const AxisFrame frame = clear_frame(sphere, plain, template_);
+      growing_->spheres[face] = {std::move(plain.loops), frame};
+    }
+  }
+  return known_.spheres.at(face);
 }
 
 // Edges without a curve (poles, apexes) have no place in STEP; a loop of nothing else is a point.

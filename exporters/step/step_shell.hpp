@@ -6,16 +6,23 @@
 #include <vector>
 
 #include "meso/brep/instance_map.hpp"
+#include "sphere_loops.hpp"
 #include "step_geometry.hpp"
 #include "step_text.hpp"
 
 namespace meso::step {
 
+/// How a face on a sphere is written: see plain_loops() and clear_frame().
+struct SphereFace {
+  Loops loops;
+  brep::AxisFrame frame;
+};
+
 /// The numbers of what several faces share, in `vertices` and `edges`, and of the faces.
 struct ShellNumbers {
   brep::InstanceMap<StepId> vertices, edges;
   std::vector<StepId> faces;
-  std::map<std::uint32_t, brep::AxisFrame> sphere_frames;  ///< by face of the template: see clear_frame()
+  std::map<std::uint32_t, SphereFace> spheres;  ///< by face of the template
 };
 
 /// Vertices and edges are written when a face first uses them, and never twice.
@@ -37,7 +44,7 @@ class ShellWriter {
   StepId write_face(const brep::FaceInstance& instance);
 
  private:
-  [[nodiscard]] StepId write_surface(std::uint32_t face);
+  const SphereFace& sphere_face(const brep::SphereSurface& sphere, std::uint32_t face);
   StepId write_loop(const std::vector<brep::Coedge>& loop, const brep::Index3& cell);
   StepId edge_id(std::uint32_t index, const brep::Index3& cell);
   StepId vertex_id(std::uint32_t index, const brep::Index3& cell);

@@ -178,6 +178,31 @@ TEST(RoundTripVoids, LocatedShellsShareOneTemplate) {
   EXPECT_NEAR(measure(*body).volume, 192 - 4 * std::numbers::pi, 1e-9);
 }
 
+/// A ball and struts from its centre.
+TopoDS_Shape ball_and_struts(double ball, double strut, const std::vector<gp_Dir>& directions) {
+  TopoDS_Shape shape = BRepPrimAPI_MakeSphere(ball).Shape();
+  for (const gp_Dir& d : directions)
+    shape = BRepAlgoAPI_Fuse(shape, BRepPrimAPI_MakeCylinder(gp_Ax2(gp_Pnt(), d), strut, 3).Shape()).Shape();
+  return shape;
+}
+
+// Its seam is interrupted where struts leave the ball. Four struts that meet on either side leave a belt of it.
+TEST(RoundTripBalls, AreReadOnTheirOwnSideOfEveryLoop) {
+  std::vector<gp_Dir> corners;
+  for (const double x : {-2.87, 2.87})
+    for (const auto& [y, z] : {std::pair(2.1, 2.02), {2.1, -2.02}, {-2.1, -2.02}, {-2.1, 2.02}})
+      corners.emplace_back(x, y, z);
+  const gp_Dir right(1, 0, 0), left(-1, 0, 0), up(0, 0, 1);
+  for (const auto& directions : std::vector<std::vector<gp_Dir>>{{right}, {right, left}, {right, up}, corners}) {
+    const TopoDS_Shape shape = ball_and_struts(0.829, 0.49, directions);
+    DiagnosticSink sink;
+    const auto body = shape_to_body(shape, {}, sink);
+    ASSERT_TRUE(body);
+    const Measures m = measure(*body);
+    expect_reads_as(step_of(*body), 1, m.volume, m.area);
+  }
+}
+
 TEST(ShapeToBodyErrors, AShapeWithoutSolids) {
   DiagnosticSink sink;
   EXPECT_FALSE(shape_to_body(TopExp_Explorer(BRepPrimAPI_MakeBox(1, 1, 1).Shape(), TopAbs_FACE).Current(), {}, sink));

@@ -78,18 +78,21 @@ class Wall {
     is_stopped_ = true;
   }
 
+  [[nodiscard]] Diagnostic why_of(int signal) const {
+    if (is_stopped_) return {.code = Code::cancelled};
+    if (signal == SIGXCPU) return {.code = Code::limit_time};
+    if (signal == SIGKILL) return {.code = Code::limit_memory, .args = {"this machine has"}};
+    return {.code = Code::geometry_crashed, .args = {strsignal(signal)}};
+  }
+
   [[noreturn]] void end(int status) {
     listen();
     if (WIFEXITED(status)) ::_exit(WEXITSTATUS(status));
-    const int signal = WTERMSIG(status);
     for (const std::string& path : unfinished_) {
       std::error_code ignored;
       std::filesystem::remove_all(path, ignored);
     }
-    const Diagnostic why = is_stopped_ ? Diagnostic{.code = Code::cancelled}
-                           : signal == SIGKILL
-                               ? Diagnostic{.code = Code::limit_memory, .args = {"this machine has"}}
-                               : Diagnostic{.code = Code::geometry_crashed, .args = {strsignal(signal)}};
+    const Diagnostic why = why_of(WTERMSIG(status));
     tell_last(why, in_json_ && !is_answered_);
     ::_exit(info(why.code).exit_code);
   }

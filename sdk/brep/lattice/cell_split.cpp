@@ -120,13 +120,18 @@ std::optional<Vec3> CellSplit::middle_of(const Piece& piece) const {
   return to_vec(point);
 }
 
-/// The point of those that is farthest from the triangles.
+/// The point of those that is farthest from the triangles, and all that are clear of them.
 struct Farthest {
-  Vec3 point;
+  double clear_from = 0;
+  Vec3 point{};
   double distance = -1;
+  std::vector<Vec3> clear{};
   void look_at(Vec3 p, const std::vector<Triangle3>& triangles) {
     const double d = distance_to(triangles, p);
-    if (d > distance) *this = {p, d};
+    if (d > clear_from) clear.push_back(p);
+    if (d <= distance) return;
+    point = p;
+    distance = d;
   }
 };
 
@@ -141,9 +146,8 @@ const char* CellSplit::place_cell_pieces() {
     }
     if (side == 0) {
       const double margin = body_.reach + tiny * options_.size;
-      Farthest best;
-      const std::vector<Vec3> points = points_on(set, true);
-      for (const Vec3 p : points) best.look_at(p, body_.triangles);
+      Farthest best{.clear_from = margin + roughest * options_.size};
+      for (const Vec3 p : points_on(set, true)) best.look_at(p, body_.triangles);
       if (best.distance <= margin)
         for (const std::uint32_t p : set)
           if (const auto middle = middle_of(faces_.pieces[p])) best.look_at(*middle, body_.triangles);
@@ -154,6 +158,9 @@ const char* CellSplit::place_cell_pieces() {
       } else {
         side = body_.contains(best.point) ? 1 : -1;
       }
+      // A face of the body that should have divided it and did not.
+      for (const Vec3 p : best.clear)
+        if (body_.contains(p) != (side > 0)) return "a piece of a cell is on both sides of the body";
     }
     for (const std::uint32_t p : set) kept_[p] = side > 0;
   }
@@ -176,10 +183,18 @@ const char* CellSplit::place_caps() {
   };
   for (const auto& set : sets_) {
     if (set.front() < faces_.of_cell) continue;
-    std::vector<Vec3> points = points_on(set, false);
-    if (std::ranges::any_of(points, beyond)) continue;
-    Farthest best;
-    for (const Vec3 p : points) best.look_at(p, triangles);
+    const std::vector<Vec3> points = points_on(set, false);
+    const bool reaches_out = std::ranges::any_of(points, beyond);
+    Farthest best{.clear_from = margin + roughest * options_.size};
+    for (const Vec3 p : points)
+      if (!beyond(p)) best.look_at(p, triangles);
+    const auto contradicted = [&](bool in) {
+      return std::ranges::any_of(best.clear, [&](Vec3 p) { return cell_.probe.contains(p) != in; });
+    };
+    if (reaches_out) {
+      if (contradicted(false)) return "a face of the body in a cell is on both sides of it";
+      continue;
+    }
     if (best.distance <= margin)
       for (const std::uint32_t p : set) {
         const auto middle = middle_of(faces_.pieces[p]);
@@ -196,6 +211,7 @@ const char* CellSplit::place_caps() {
     } else {
       in = cell_.probe.contains(best.point);
     }
+    if (contradicted(in)) return "a face of the body in a cell is on both sides of it";
     for (const std::uint32_t p : set) kept_[p] = in;
   }
   return nullptr;

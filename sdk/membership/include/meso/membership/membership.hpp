@@ -9,8 +9,8 @@
 //
 // Millimetres, in the part's frame. Unknown: implicit bodies, parts with a fillet or a skin, imports without a reader,
 // volume elements whose system has no inverse here, points in a part whose loose fragments are dropped, and cells of
-// which a boundary rule cannot be decided from points. Boundary rules look at 8 x 8 x 8 points of each cell: a body that enters a cell between them
-// is missed. The answer at a surface itself is left to rounding.
+// which a boundary rule cannot be decided from points. Boundary rules look at 8 x 8 x 8 points of each cell: a body
+// that enters a cell between them is missed. The answer at a surface itself is left to rounding.
 //
 // Errors: an empty optional and what evaluation reports, LIMIT_CELLS, LIMIT_TIME or CANCELLED. Cost: some 200 bytes a
 // cell, and about a microsecond a point, growing with the logarithm of the number of cells. Thread rule: const
