@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// The border of a face on a sphere as a STEP file has it. OpenCASCADE's reader takes the wrong side of some loops that
+// run along a seam or meet themselves in a point; without these it reads the same face.
+
+#include <vector>
+
+#include "meso/brep/body.hpp"
+
+namespace meso::step {
+
+using Loops = std::vector<std::vector<brep::Coedge>>;
+
+/// Loops that pass no vertex twice and have no seams (edges that `face` has on both sides) and poles in them. None
+/// where a loop is all seam, as on a whole sphere: that is what the reader expects, and loops are best as they are.
+[[nodiscard]] Loops plain_loops(const brep::FaceTemplate& face, const brep::Template& geometry);
+
+}  // namespace meso::step
