@@ -16,7 +16,8 @@ namespace {
 constexpr double tiny = 1e-6;  ///< relative to the cell: of lengths and volumes
 // Of areas as vectors: edges known to 1e-4 of the cell leave gaps of this size between their faces.
 constexpr double open_area = 1e-4;
-constexpr double roughest = 1e-2;  ///< of the cell: what is known worse is no edge
+constexpr double roughest = 1e-2;      ///< of the cell: what is known worse is no edge
+constexpr std::size_t witnesses = 12;  ///< points that must tell the same of one piece
 
 double largest_tolerance(const TopoDS_Shape& shape) {
   double largest = 0;
@@ -133,6 +134,13 @@ struct Farthest {
     point = p;
     distance = d;
   }
+  /// True where one of those that are clear is on the other side.
+  template <typename Contains>
+  [[nodiscard]] bool contradicts(bool in, Contains contains) const {
+    for (std::size_t i = 0; i < clear.size(); i += 1 + clear.size() / witnesses)
+      if (contains(clear[i]) != in) return true;
+    return false;
+  }
 };
 
 const char* CellSplit::place_cell_pieces() {
@@ -159,8 +167,7 @@ const char* CellSplit::place_cell_pieces() {
         side = body_.contains(best.point) ? 1 : -1;
       }
       // A face of the body that should have divided it and did not.
-      for (const Vec3 p : best.clear)
-        if (body_.contains(p) != (side > 0)) return "a piece of a cell is on both sides of the body";
+      if (best.contradicts(side > 0, body_.contains)) return "a piece of a cell is on both sides of the body";
     }
     for (const std::uint32_t p : set) kept_[p] = side > 0;
   }
@@ -189,7 +196,7 @@ const char* CellSplit::place_caps() {
     for (const Vec3 p : points)
       if (!beyond(p)) best.look_at(p, triangles);
     const auto contradicted = [&](bool in) {
-      return std::ranges::any_of(best.clear, [&](Vec3 p) { return cell_.probe.contains(p) != in; });
+      return best.contradicts(in, [&](Vec3 p) { return cell_.probe.contains(p); });
     };
     if (reaches_out) {
       if (contradicted(false)) return "a face of the body in a cell is on both sides of it";
