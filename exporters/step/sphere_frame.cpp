@@ -41,7 +41,9 @@ std::vector<Vec3> points_along(const EdgeTemplate& edge, Vec3 first, Vec3 last) 
   return points;
 }
 
-std::vector<Loop> loops_of(const FaceTemplate& face, const Template& geometry, Vec3 centre) {
+}  // namespace
+
+std::vector<Loop> points_of_loops(const FaceTemplate& face, const Template& geometry, Vec3 centre) {
   std::vector<Loop> loops;
   for (const auto& coedges : face.loops) {
     Loop& loop = loops.emplace_back();
@@ -59,6 +61,8 @@ std::vector<Loop> loops_of(const FaceTemplate& face, const Template& geometry, V
   }
   return loops;
 }
+
+namespace {
 
 /// Of a loop that does not cross the seam: what lies on its left, if the plane of angles is spread out.
 double signed_area(const AxisFrame& frame, const Loop& loop) {
@@ -120,7 +124,7 @@ std::vector<Vec3> axes_to_try(const AxisFrame& own, const std::vector<Loop>& loo
 
 AxisFrame clear_frame(const SphereSurface& sphere, const FaceTemplate& face, const Template& geometry) {
   const AxisFrame& own = sphere.frame;
-  const std::vector<Loop> loops = loops_of(face, geometry, own.origin);
+  const std::vector<Loop> loops = points_of_loops(face, geometry, own.origin);
   AxisFrame best = own;
   Clearance clearest = clearance_of(own, loops, face.reversed);
   if (clearest.crossings == 0 && clearest.margin > clear_enough) return own;

@@ -11,18 +11,11 @@ namespace meso::step {
 
 using namespace brep;
 
-namespace {
-
-using VertexKey = std::tuple<std::uint32_t, Index3>;
-
-/// Where a use of an edge begins (0) or ends (1).
 VertexKey vertex_of(const Coedge& use, std::size_t end, const Template& geometry) {
   const EdgeTemplate& edge = geometry.edges[use.edge];
   const std::size_t k = use.reversed ? 1 - end : end;
   return {edge.vertex[k], use.offset + edge.vertex_offset[k]};
 }
-
-}  // namespace
 
 Loops plain_loops(const FaceTemplate& face, const Template& geometry) {
   std::map<std::tuple<std::uint32_t, Index3>, int> uses;

@@ -3,11 +3,18 @@
 // The border of a face on a sphere as a STEP file has it. OpenCASCADE's reader takes the wrong side of some loops that
 // run along a seam or meet themselves in a point; without these it reads the same face.
 
+#include <tuple>
 #include <vector>
 
 #include "meso/brep/body.hpp"
 
 namespace meso::step {
+
+/// A vertex, and its cell.
+using VertexKey = std::tuple<std::uint32_t, brep::Index3>;
+
+/// Where a use of an edge begins (0) or ends (1), in the cell of the face.
+[[nodiscard]] VertexKey vertex_of(const brep::Coedge& use, std::size_t end, const brep::Template& geometry);
 
 using Loops = std::vector<std::vector<brep::Coedge>>;
 

@@ -7,41 +7,77 @@ namespace meso::step {
 
 using namespace brep;
 
-StepId ShellWriter::write_face(const FaceInstance& instance) {
+void ShellWriter::write_face(const FaceInstance& instance) {
   const FaceTemplate& face = template_.faces[instance.face];
   const auto* const ball = std::get_if<SphereSurface>(&face.surface);
-  const SphereFace* const sphere = ball == nullptr ? nullptr : &sphere_face(*ball, instance.face);
-  bounds_.clear();
-  for (const auto& loop : sphere == nullptr ? face.loops : sphere->loops) {
-    const StepId written = write_loop(loop, instance.cell);
-    bounds_.push_back(text_.entity("FACE_BOUND", NoName{}, Ref{written}, true));
-  }
-  pose_.set_cell(instance.cell);
-  const StepId surface = sphere == nullptr ? geometry_.surface(face.surface, pose_)
-                                           : geometry_.surface(SphereSurface{sphere->frame, ball->radius}, pose_);
-  return text_.entity("ADVANCED_FACE", NoName{}, bounds_, Ref{surface}, !face.reversed);
+  if (ball == nullptr) return write_piece(face, instance.cell, nullptr);
+  const SphereFace& sphere = sphere_face(*ball, instance.face);
+  const bool is_cut = !sphere.cut.edges.empty();
+  if (is_cut) write_cut(sphere.cut, instance.cell);
+  for (const FaceTemplate& piece : sphere.pieces) write_piece(piece, instance.cell, is_cut ? &sphere.cut : nullptr);
 }
 
-const SphereFace& ShellWriter::sphere_face(const SphereSurface& sphere, std::uint32_t face) {
-  if (growing_ != nullptr && !growing_->spheres.contains(face)) {
-    FaceTemplate plain{.surface = sphere, .reversed = template_.faces[face].reversed};
-    plain.loops = plain_loops(template_.faces[face], template_);
-    if (plain.loops.empty()) {
-      growing_->spheres[face] = {template_.faces[face].loops, sphere.frame};
-    } else {
-      const AxisFrame frame = clear_frame(sphere, plain, template_);
-      growing_->spheres[face] = {std::move(plain.loops), frame};
-    }
+void ShellWriter::write_piece(const FaceTemplate& face, const Index3& cell, const SpherePieces* cut) {
+  bounds_.clear();
+  for (const auto& loop : face.loops) {
+    const StepId written = write_loop(loop, cell, cut);
+    bounds_.push_back(text_.entity("FACE_BOUND", NoName{}, Ref{written}, true));
   }
-  return known_.spheres.at(face);
+  pose_.set_cell(cell);
+  const StepId surface = geometry_.surface(face.surface, pose_);
+  const StepId written = text_.entity("ADVANCED_FACE", NoName{}, bounds_, Ref{surface}, !face.reversed);
+  if (growing_ != nullptr) growing_->faces.push_back(written);
+}
+
+/// What divides a face belongs to no other, and each of its instances has its own.
+void ShellWriter::write_cut(const SpherePieces& cut, const Index3& cell) {
+  std::vector<StepId> vertices;
+  pose_.set_cell(cell);
+  for (std::size_t v = cut.vertices.size(); v < cut.border.vertices.size(); ++v) {
+    const StepId point = geometry_.point(pose_.point(cut.border.vertices[v]));
+    vertices.push_back(text_.entity("VERTEX_POINT", NoName{}, Ref{point}));
+  }
+  cut_edges_.clear();
+  for (std::size_t e = cut.edges.size(); e < cut.border.edges.size(); ++e) {
+    const EdgeTemplate& edge = cut.border.edges[e];
+    const auto vertex = [&](std::size_t k) {
+      return edge.vertex[k] < cut.vertices.size()
+                 ? vertex_id(cut.vertices[edge.vertex[k]], cell + edge.vertex_offset[k])
+                 : vertices[edge.vertex[k] - cut.vertices.size()];
+    };
+    const StepId first = vertex(0), last = vertex(1);
+    pose_.set_cell(cell);
+    const StepId curve = geometry_.curve(edge.curve, pose_);
+    cut_edges_.push_back(text_.entity("EDGE_CURVE", NoName{}, Ref{first}, Ref{last}, Ref{curve}, true));
+  }
+}
+
+const SphereFace& ShellWriter::sphere_face(const SphereSurface& sphere, std::uint32_t index) {
+  if (growing_ == nullptr || growing_->spheres.contains(index)) return known_.spheres.at(index);
+  const FaceTemplate& face = template_.faces[index];
+  SphereFace& made = growing_->spheres[index];
+  made.cut = divided(sphere, face, template_);
+  const bool is_cut = !made.cut.edges.empty();
+  made.pieces =
+      is_cut ? std::move(made.cut.pieces) : std::vector{FaceTemplate{face.surface, face.reversed, face.loops}};
+  for (FaceTemplate& piece : made.pieces) {
+    const Template& border = is_cut ? made.cut.border : template_;
+    Loops plain = plain_loops(piece, border);
+    if (plain.empty()) continue;
+    piece.loops = std::move(plain);
+    piece.surface = SphereSurface{clear_frame(sphere, piece, border), sphere.radius};
+  }
+  return made;
 }
 
 // Edges without a curve (poles, apexes) have no place in STEP; a loop of nothing else is a point.
-StepId ShellWriter::write_loop(const std::vector<Coedge>& loop, const Index3& cell) {
+StepId ShellWriter::write_loop(const std::vector<Coedge>& loop, const Index3& cell, const SpherePieces* cut) {
   coedges_.clear();
   for (const Coedge& use : loop) {
-    if (template_.edges[use.edge].degenerate) continue;
-    const StepId edge = edge_id(use.edge, cell + use.offset);
+    const bool is_own = cut != nullptr && use.edge >= cut->edges.size();
+    const std::uint32_t index = cut == nullptr || is_own ? use.edge : cut->edges[use.edge];
+    if (!is_own && template_.edges[index].degenerate) continue;
+    const StepId edge = is_own ? cut_edges_[index - cut->edges.size()] : edge_id(index, cell + use.offset);
     coedges_.push_back(text_.entity("ORIENTED_EDGE", NoName{}, Raw{"*"}, Raw{"*"}, Ref{edge}, !use.reversed));
   }
   if (!coedges_.empty()) return text_.entity("EDGE_LOOP", NoName{}, coedges_);

@@ -6,16 +6,17 @@
 #include <vector>
 
 #include "meso/brep/instance_map.hpp"
-#include "sphere_loops.hpp"
+#include "sphere_pieces.hpp"
 #include "step_geometry.hpp"
 #include "step_text.hpp"
 
 namespace meso::step {
 
-/// How a face on a sphere is written: see plain_loops() and clear_frame().
+/// How a face on a sphere is written: see divided(), plain_loops() and clear_frame(). Where `cut` is empty, edges of
+/// the only piece are the template's.
 struct SphereFace {
-  Loops loops;
-  brep::AxisFrame frame;
+  std::vector<brep::FaceTemplate> pieces;
+  SpherePieces cut;
 };
 
 /// The numbers of what several faces share, in `vertices` and `edges`, and of the faces.
@@ -41,11 +42,13 @@ class ShellWriter {
   ShellWriter(StepText& text, StepGeometry& geometry, const brep::Shell& shell, const ShellNumbers& numbers)
       : text_(text), geometry_(geometry), template_(*shell.geometry), pose_(shell), known_(numbers) {}
 
-  StepId write_face(const brep::FaceInstance& instance);
+  void write_face(const brep::FaceInstance& instance);
 
  private:
-  const SphereFace& sphere_face(const brep::SphereSurface& sphere, std::uint32_t face);
-  StepId write_loop(const std::vector<brep::Coedge>& loop, const brep::Index3& cell);
+  const SphereFace& sphere_face(const brep::SphereSurface& sphere, std::uint32_t index);
+  void write_piece(const brep::FaceTemplate& face, const brep::Index3& cell, const SpherePieces* cut);
+  void write_cut(const SpherePieces& cut, const brep::Index3& cell);
+  StepId write_loop(const std::vector<brep::Coedge>& loop, const brep::Index3& cell, const SpherePieces* cut);
   StepId edge_id(std::uint32_t index, const brep::Index3& cell);
   StepId vertex_id(std::uint32_t index, const brep::Index3& cell);
   StepId write_edge(const brep::EdgeTemplate& edge, const brep::Index3& cell);
@@ -58,6 +61,7 @@ class ShellWriter {
   ShellNumbers* growing_ = nullptr;
   const ShellNumbers& known_;
   std::vector<StepId> bounds_, coedges_;
+  std::vector<StepId> cut_edges_;  ///< of the face that is being written
 };
 
 }  // namespace meso::step

@@ -125,8 +125,7 @@ class BodyWriter {
       Numbers& numbers = shell.numbers;
       if (!writer) writer.emplace(text, geometry, *shell.shell, numbers);
       if (at.face < shell.faces.size()) {
-        const StepId face = writer->write_face(shell.faces[at.face++]);
-        if constexpr (!std::is_const_v<Numbers>) numbers.faces.push_back(face);
+        writer->write_face(shell.faces[at.face++]);
         continue;
       }
       end_shell(text, shell, !std::is_const_v<Numbers>);
