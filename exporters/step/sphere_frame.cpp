@@ -84,8 +84,9 @@ struct Clearance {
   }
 };
 
-// A hole that is a face's only loop is read as the border of its inner side, unless it is around a pole.
-Clearance clearance_of(const AxisFrame& frame, const std::vector<Loop>& loops, bool reversed) {
+// A hole that is a face's only loop is read as the border of its inner side, unless it is around a pole. Where it is
+// not better than `least`, the margin is only known not to be.
+Clearance clearance_of(const AxisFrame& frame, const std::vector<Loop>& loops, bool reversed, const Clearance& least) {
   const Vec3 y = cross(frame.z, frame.x);
   Clearance found;
   for (const Loop& loop : loops) {
@@ -94,7 +95,8 @@ Clearance clearance_of(const AxisFrame& frame, const std::vector<Loop>& loops, b
     for (std::size_t i = 0; i < loop.size(); ++i) {
       const Vec3 p = loop[i], q = loop[(i + 1) % loop.size()];
       const double pu = dot(p, frame.x), pw = dot(p, y), qu = dot(q, frame.x), qw = dot(q, y);
-      found.margin = std::min(found.margin, std::hypot(pu, pw));
+      found.margin = std::min(found.margin, std::sqrt(pu * pu + pw * pw));
+      if (least.crossings == 0 && found.margin <= least.margin) return found;
       if (pu > 0) beside = std::min(beside, std::fabs(pw));
       if ((pw < 0) != (qw < 0) && pu * std::fabs(qw) + qu * std::fabs(pw) > 0) ++crossings;
     }
@@ -126,7 +128,7 @@ AxisFrame clear_frame(const SphereSurface& sphere, const FaceTemplate& face, con
   const AxisFrame& own = sphere.frame;
   const std::vector<Loop> loops = points_of_loops(face, geometry, own.origin);
   AxisFrame best = own;
-  Clearance clearest = clearance_of(own, loops, face.reversed);
+  Clearance clearest = clearance_of(own, loops, face.reversed, {.margin = 0});
   if (clearest.crossings == 0 && clearest.margin > clear_enough) return own;
   for (const Vec3 z : axes_to_try(own, loops)) {
     const Vec3 beside = std::fabs(z.x) < 0.6 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
@@ -134,7 +136,7 @@ AxisFrame clear_frame(const SphereSurface& sphere, const FaceTemplate& face, con
     for (int a = 0; a < azimuths; ++a) {
       const double angle = 2 * pi * a / azimuths;
       const AxisFrame frame{own.origin, z, std::cos(angle) * x + std::sin(angle) * y};
-      const Clearance clearance = clearance_of(frame, loops, face.reversed);
+      const Clearance clearance = clearance_of(frame, loops, face.reversed, clearest);
       if (clearest < clearance) std::tie(best, clearest) = std::tie(frame, clearance);
     }
   }

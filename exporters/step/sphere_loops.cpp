@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <map>
+#include <set>
 #include <tuple>
 
 #include "meso/brep/instance_map.hpp"
@@ -37,6 +38,14 @@ Loops plain_loops(const FaceTemplate& face, const Template& geometry) {
     if (!path.empty() || plain.size() == before) return {};
   }
   return plain;
+}
+
+bool touch(const Loops& loops, const Template& geometry) {
+  std::set<VertexKey> passed;
+  for (const auto& loop : loops)
+    for (const Coedge& use : loop)
+      if (!passed.insert(vertex_of(use, 0, geometry)).second) return true;
+  return false;
 }
 
 }  // namespace meso::step

@@ -22,4 +22,7 @@ using Loops = std::vector<std::vector<brep::Coedge>>;
 /// where a loop is all seam, as on a whole sphere: that is what the reader expects, and loops are best as they are.
 [[nodiscard]] Loops plain_loops(const brep::FaceTemplate& face, const brep::Template& geometry);
 
+/// Whether loops touch: a vertex is passed twice.
+[[nodiscard]] bool touch(const Loops& loops, const brep::Template& geometry);
+
 }  // namespace meso::step

@@ -12,6 +12,7 @@ void ShellWriter::write_face(const FaceInstance& instance) {
   const auto* const ball = std::get_if<SphereSurface>(&face.surface);
   if (ball == nullptr) return write_piece(face, instance.cell, nullptr);
   const SphereFace& sphere = sphere_face(*ball, instance.face);
+  if (growing_ != nullptr && sphere.touches_itself) ++growing_->touching;
   const bool is_cut = !sphere.cut.edges.empty();
   if (is_cut) write_cut(sphere.cut, instance.cell);
   for (const FaceTemplate& piece : sphere.pieces) write_piece(piece, instance.cell, is_cut ? &sphere.cut : nullptr);
@@ -64,6 +65,7 @@ const SphereFace& ShellWriter::sphere_face(const SphereSurface& sphere, std::uin
     const Template& border = is_cut ? made.cut.border : template_;
     Loops plain = plain_loops(piece, border);
     if (plain.empty()) continue;
+    made.touches_itself = made.touches_itself || touch(plain, border);
     piece.loops = std::move(plain);
     piece.surface = SphereSurface{clear_frame(sphere, piece, border), sphere.radius};
   }

@@ -17,6 +17,7 @@ namespace meso::step {
 struct SphereFace {
   std::vector<brep::FaceTemplate> pieces;
   SpherePieces cut;
+  bool touches_itself = false;  ///< all the same: see StepCounts
 };
 
 /// The numbers of what several faces share, in `vertices` and `edges`, and of the faces.
@@ -24,6 +25,7 @@ struct ShellNumbers {
   brep::InstanceMap<StepId> vertices, edges;
   std::vector<StepId> faces;
   std::map<std::uint32_t, SphereFace> spheres;  ///< by face of the template
+  std::uint64_t touching = 0;                   ///< faces whose loops touch
 };
 
 /// Vertices and edges are written when a face first uses them, and never twice.

@@ -68,7 +68,7 @@ class BodyWriter {
     end.entity("SHAPE_DEFINITION_REPRESENTATION", Ref{shape}, Ref{representation});
     end.raw("ENDSEC;\nEND-ISO-10303-21;\n");
     put(tail);
-    return {bytes_, end.last(), ok_};
+    return {.bytes = bytes_, .entities = end.last(), .touching_faces = touching_, .complete = ok_};
   }
 
  private:
@@ -140,6 +140,7 @@ class BodyWriter {
     const StepId closed = text.entity("CLOSED_SHELL", NoName{}, shell.numbers.faces);
     const StepId id =
         shell.is_void() ? text.entity("ORIENTED_CLOSED_SHELL", NoName{}, Raw{"*"}, Ref{closed}, true) : closed;
+    if (keeps) touching_ += shell.numbers.touching;
     if (keeps && !shell.is_void()) solids_[shell.solid] = {id, {}};
     if (keeps && shell.is_void()) solids_[shell.solid].voids.push_back(id);
     if (!shell.is_last()) return;
@@ -163,7 +164,7 @@ class BodyWriter {
   std::vector<StepId> items_;
   Directions directions_;
   StepId last_ = 0;
-  std::uint64_t bytes_ = 0;
+  std::uint64_t bytes_ = 0, touching_ = 0;
   bool ok_ = true;
 };
 

@@ -89,8 +89,8 @@ class BeamsMaker {
     double radius = 0, widening = 0;
   };
 
-  // Cones of radius r at a node, that grow by k per length away from it and whose axes meet at the angle theta,
-  // have left each other at the distance r / (sin(theta / 2) - k cos(theta / 2)).
+  // Cones of radius r at a node, that grow by k per length away from it and whose axes meet at the angle
+  // theta, have left each other at the distance r / (sin(theta / 2) - k cos(theta / 2)).
   bool make_automatic_balls() {
     std::vector<std::vector<Leaving>> leaving(shape_.nodes.size());
     for (const Strut& s : shape_.struts) {

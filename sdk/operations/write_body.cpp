@@ -40,9 +40,12 @@ std::optional<Written> write_format(Format format, const brep::Body& body, const
   switch (format) {
     case Format::mesh:
       break;  // see write_shared_mesh()
-    case Format::step:
-      return Written{.bytes =
-                         write_step(body, {.name = name, .timestamp = source_date_epoch(), .jobs = jobs}, out).bytes};
+    case Format::step: {
+      const StepCounts counts = write_step(body, {.name = name, .timestamp = source_date_epoch(), .jobs = jobs}, out);
+      if (counts.touching_faces > 0)
+        sink.report({.code = Code::step_balls_touch, .args = {std::to_string(counts.touching_faces)}});
+      return Written{.bytes = counts.bytes};
+    }
     case Format::stl: {
       const StlCounts counts =
           write_stl(brep::triangle_ranges(body), options.ascii ? StlFormat::ascii : StlFormat::binary, out, jobs);

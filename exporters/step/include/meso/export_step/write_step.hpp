@@ -29,6 +29,7 @@ struct StepOptions {
 
 struct StepCounts {
   std::uint64_t bytes = 0, entities = 0;
+  std::uint64_t touching_faces = 0;  ///< of balls whose struts touch: OpenCASCADE's reader may take their other side
   bool complete = true;
 };
 

@@ -132,8 +132,8 @@ class Evaluation {
 
   [[nodiscard]] const Pattern* find_pattern(std::string_view id) const;
   [[nodiscard]] const Part* find_part(std::string_view id) const;
-  /// `name` as expressions write it: field.quantity. `where` is told of points without a value. Empty after a
-  /// report.
+  /// `name` as expressions write it: field.quantity. `where` is told of points without a value. Empty after
+  /// a report.
   [[nodiscard]] PointQuantity quantity(std::string_view name, ElementId where, DiagnosticSink& sink) const;
   [[nodiscard]] std::optional<CellStream> cells(const Pattern& pattern, DiagnosticSink& sink) const;
   /// The macrostructure's body in the world, placement applied.
