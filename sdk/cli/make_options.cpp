@@ -16,12 +16,6 @@ std::optional<operations::MakeOptions> make_options(Run& run) {
   return run.sink.has_errors() ? std::nullopt : std::optional(std::move(options));
 }
 
-Json accuracy_json(const operations::MeshAccuracy& accuracy) {
-  return {{"distance", accuracy.distance},
-          {"gridSamples", accuracy.grid_samples},
-          {"surfaceSamples", accuracy.surface_samples}};
-}
-
 Json seconds_json(const operations::Seconds& s) {
   return {{"read", s.read}, {"evaluate", s.evaluate}, {"realise", s.realise}, {"write", s.write}, {"total", s.total}};
 }

@@ -12,7 +12,6 @@ namespace meso::cli {
 /// Empty: a usage error was reported. Starts the run's limits (see Run::options).
 [[nodiscard]] std::optional<operations::MakeOptions> make_options(Run& run);
 
-[[nodiscard]] Json accuracy_json(const operations::MeshAccuracy& accuracy);
 [[nodiscard]] Json seconds_json(const operations::Seconds& seconds);
 
 }  // namespace meso::cli

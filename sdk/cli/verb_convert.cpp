@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "accuracy_json.hpp"
 #include "make_options.hpp"
 #include "meso/expr/expression.hpp"
 #include "meso/operations/convert.hpp"

@@ -6,7 +6,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 
-#include "make_options.hpp"
+#include "accuracy_json.hpp"
 #include "meso/base/number.hpp"
 #include "meso/implicit/surfaces.hpp"
 #include "meso/operations/sdf.hpp"
