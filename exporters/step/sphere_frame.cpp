@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <tuple>
 
@@ -96,15 +97,24 @@ Clearance clearance_of(const AxisFrame& frame, const std::vector<Loop>& loops, b
       const Vec3 p = loop[i], q = loop[(i + 1) % loop.size()];
       const double pu = dot(p, frame.x), pw = dot(p, y), qu = dot(q, frame.x), qw = dot(q, y);
       found.margin = std::min(found.margin, std::sqrt(pu * pu + pw * pw));
-      if (least.crossings == 0 && found.margin <= least.margin) return found;
+      if (found.crossings >= least.crossings && found.margin <= least.margin) return found;
       if (pu > 0) beside = std::min(beside, std::fabs(pw));
       if ((pw < 0) != (qw < 0) && pu * std::fabs(qw) + qu * std::fabs(pw) > 0) ++crossings;
     }
     if (crossings == 0) found.margin = std::min(found.margin, beside);
     if (crossings > 1) found.crossings += crossings;
+    if (found.crossings > least.crossings) return found;
     if (crossings == 0 && loops.size() == 1 && (signed_area(frame, loop) < 0) != reversed) found.crossings += 2;
   }
   return found;
+}
+
+/// Sine of the angle between an axis and the nearest point: no frame with this axis has a larger margin.
+double margin_of_poles(Vec3 axis, const std::vector<Loop>& loops) {
+  double along = 0;
+  for (const Loop& loop : loops)
+    for (const Vec3& p : loop) along = std::max(along, std::fabs(dot(p, axis)));
+  return std::sqrt(std::max(0.0, 1 - along * along));
 }
 
 /// Through the middles of holes, and spread over the sphere.
@@ -128,9 +138,11 @@ AxisFrame clear_frame(const SphereSurface& sphere, const FaceTemplate& face, con
   const AxisFrame& own = sphere.frame;
   const std::vector<Loop> loops = points_of_loops(face, geometry, own.origin);
   AxisFrame best = own;
-  Clearance clearest = clearance_of(own, loops, face.reversed, {.margin = 0});
+  Clearance clearest = clearance_of(own, loops, face.reversed, {.crossings = std::numeric_limits<int>::max()});
   if (clearest.crossings == 0 && clearest.margin > clear_enough) return own;
   for (const Vec3 z : axes_to_try(own, loops)) {
+    constexpr double rounding = 1e-6;
+    if (clearest.crossings == 0 && margin_of_poles(z, loops) + rounding < clearest.margin) continue;
     const Vec3 beside = std::fabs(z.x) < 0.6 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
     const Vec3 x = unit(beside - dot(beside, z) * z), y = cross(z, x);
     for (int a = 0; a < azimuths; ++a) {
