@@ -30,16 +30,6 @@ double gyroid(Vec3 p) {
 
 double ball(Vec3 p) { return norm(p) - 1; }
 
-// Signs and sizes without any order, so that thousands of ambiguous faces join.
-double noise(Vec3 p) {
-  std::uint64_t h = 0;
-  for (std::size_t i = 0; i < 3; ++i) {
-    h = (h ^ static_cast<std::uint64_t>(std::llround(p[i] * 1000) + 100000)) * 0x9e3779b97f4a7c15ULL;
-    h ^= h >> 29;
-  }
-  return static_cast<double>(h % 2000001) / 1e6 - 1;
-}
-
 Grid cube(std::int32_t n, double half = 1) { return {{{-half, -half, -half}, {half, half, half}}, {n, n, n}}; }
 
 struct Result {

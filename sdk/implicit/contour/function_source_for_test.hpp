@@ -56,4 +56,14 @@ class FunctionSource final : public GridSource {
   mutable std::atomic<std::size_t> asked_ = 0;
 };
 
+/// Signs and sizes without any order, so that thousands of ambiguous faces join and every slope lies.
+inline double noise(Vec3 p) {
+  std::uint64_t h = 0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    h = (h ^ static_cast<std::uint64_t>(std::llround(p[i] * 1000) + 100000)) * 0x9e3779b97f4a7c15ULL;
+    h ^= h >> 29;
+  }
+  return static_cast<double>(h % 2000001) / 1e6 - 1;
+}
+
 }  // namespace meso::implicit

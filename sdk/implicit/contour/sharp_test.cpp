@@ -236,16 +236,6 @@ TEST(Sharp, LeavesRoundThingsAlone) {
   EXPECT_EQ(sharp_mesh(grid, ball).triangles, plain.triangles);
 }
 
-// A point turned into a number without any order: thousands of faces join, and every slope lies.
-double noise(Vec3 p) {
-  std::uint64_t h = 0;
-  for (std::size_t i = 0; i < 3; ++i) {
-    h = (h ^ static_cast<std::uint64_t>(std::llround(p[i] * 1000) + 100000)) * 0x9e3779b97f4a7c15ULL;
-    h ^= h >> 29;
-  }
-  return static_cast<double>(h % 2000001) / 1e6 - 1;
-}
-
 TEST(Sharp, IsClosedWhateverTheFieldIs) {
   EXPECT_GT(expect_closed(sharp_mesh(cube(40), noise)).triangles, 100000u);
   // Signs of nodes at random, straight in between with a fold: features everywhere, joined faces, the box's sides.
