@@ -6,6 +6,9 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
+# As in test.sh: what one build folder compiled serves the next.
+export CCACHE_BASEDIR=$PWD CCACHE_NOHASHDIR=1
+
 out=build/demo
 meso=build/release/bin/meso
 ibeam=examples/ibeam/ibeam.meso
