@@ -59,6 +59,7 @@ ROWS = [
     ("10 000 cells", "block", THOUSANDS_10, "step", 4, 1.5, 10_000 * CELL),
     ("10 000 cells", "block", THOUSANDS_10, "stl", 5, 2, None),
     ("100 000 cells", "block", THOUSANDS_100, "step", 30, 15, 100_000 * CELL),
+    ("10 000 cells, radii that grow", "graded", [], "step", 10, 4, None),
     ("lattice offset from the beam", "beam", OFFSET, "step", 15, 5, None),
     ("ball, 7 000 enclosed sectors", "sectors", [], "step", 15, 2, sectors_volume()),
     ("plate, 1 000 through holes", "holes", [], "step", 3, 0.3, 500_000 - 1000 * 45 * math.pi),
