@@ -45,6 +45,15 @@ TEST_P(VtkMesh, HasPointsCellsAndArrays) {
   EXPECT_THAT(table->tetra, testing::ElementsAre(0, 1, 2, 3));
   EXPECT_THAT(table->hexa, testing::ElementsAre(4, 5, 6, 7, 8, 9, 10, 11));
 }
+TEST_P(VtkMesh, SaysOnceThatItDoesNotFitIntoMemory) {
+  const std::string name = GetParam(), bytes = bytes_of(name);
+  const RunOptions run{.max_memory_bytes = 1500};
+  DiagnosticSink sink;
+  EXPECT_FALSE(name.ends_with(".vtu") ? read_field_vtu(bytes, name, "", run, sink)
+                                      : read_field_vtk(bytes, name, "", run, sink));
+  ASSERT_EQ(sink.diagnostics().size(), 1U);
+  EXPECT_EQ(sink.diagnostics()[0].code, Code::limit_memory);
+}
 INSTANTIATE_TEST_SUITE_P(Forms, VtkMesh,
                          testing::Values("mesh_v42.vtk", "mesh_v42_binary.vtk", "mesh_v51.vtk", "mesh_v51_binary.vtk",
                                          "mesh_ascii.vtu", "mesh_base64.vtu", "mesh_zlib.vtu", "mesh_appended.vtu",

@@ -45,8 +45,11 @@ class VtuReader {
       in_.unsupported(is_big_endian_ ? "big-endian data" : "the compressor '" + compressor_ + "'");
       return std::nullopt;
     }
-    for (const DataArray& array : arrays_) {
+    for (DataArray& array : arrays_) {
+      const std::uint64_t text_bytes = array.text.size();
       if (!store(array)) return std::nullopt;
+      in_.gives_back(text_bytes);
+      array.text = {};
     }
     if (!content_.types.empty() && content_.offsets.size() != content_.types.size() + 1) {
       in_.expected("a type for every cell");
@@ -147,8 +150,11 @@ class VtuReader {
   }
   static void characters(void* self, const XML_Char* text, int size) {
     auto& reader = *static_cast<VtuReader*>(self);
-    if (reader.is_in_array_ && reader.inner_ == 0)
+    if (!reader.is_in_array_ || reader.inner_ > 0) return;
+    if (reader.in_.takes(static_cast<std::uint64_t>(size)))
       reader.arrays_.back().text.append(text, static_cast<std::size_t>(size));
+    else
+      XML_StopParser(reader.parser_, XML_FALSE);
   }
 
   bool fault(const DataArray& array, std::string what) {
@@ -183,15 +189,13 @@ class VtuReader {
   }
 
   /// Base64 or raw, a header, blocks that may be packed.
-  bool binary(const DataArray& array, std::string& bytes) {
+  bool binary(DataArray& array, std::string& bytes) {
     const bool is_appended = array.format == "appended";
-    std::string inline_text;
     std::string_view source = appended_;
     std::size_t at = static_cast<std::size_t>(array.offset);
     if (!is_appended) {
-      inline_text = array.text;
-      std::erase_if(inline_text, [](char c) { return c == ' ' || c == '\n' || c == '\t' || c == '\r'; });
-      source = inline_text;
+      std::erase_if(array.text, [](char c) { return c == ' ' || c == '\n' || c == '\t' || c == '\r'; });
+      source = array.text;
       at = 0;
     }
     const bool is_base64 = !is_appended || !is_appended_raw_;
@@ -204,7 +208,7 @@ class VtuReader {
       if (size > most_bytes || !take(source, is_base64, at, header_bytes_ + size, bytes))
         return fault(array, "fewer bytes than its header states");
       bytes.erase(0, header_bytes_);
-      return true;
+      return in_.takes(size);
     }
     std::size_t from = at;
     if (!take(source, is_base64, from, header_bytes_, head)) return fault(array, "too few bytes");
@@ -252,21 +256,26 @@ class VtuReader {
     return true;
   }
   template <class Store>
-  bool numbers(const DataArray& array, const Store& put) {
+  bool numbers(DataArray& array, const Store& put) {
     if (in_.is_stopped()) return false;
     if (array.format == "ascii") {
       fields::FileCursor text(array.text, file_ + ", array '" + array.name + "'", run_, sink_);
       while (!text.peek().empty()) {
         double value = 0;
-        if (!text.number(value) || !text.takes(2 * sizeof value)) return false;
+        if (!text.number(value) || !in_.takes(2 * sizeof value)) return false;
         put(value);
       }
-      return in_.takes(2 * sizeof(double) * array.text.size() / 2);
+      return true;
     }
     std::string bytes;
     if (array.format != "binary" && array.format != "appended")
       return fault(array, "the format '" + array.format + "'");
-    if (!binary(array, bytes)) return false;
+    if (!binary(array, bytes) || !stored(array, bytes, put)) return false;
+    in_.gives_back(bytes.size());
+    return true;
+  }
+  template <class Store>
+  bool stored(const DataArray& array, const std::string& bytes, const Store& put) {
     if (array.type == "Float64") return each<double>(array, bytes, put);
     if (array.type == "Float32") return each<float>(array, bytes, put);
     if (array.type == "Int64") return each<std::int64_t>(array, bytes, put);
@@ -280,7 +289,7 @@ class VtuReader {
     return fault(array, "the type '" + array.type + "'");
   }
 
-  bool store(const DataArray& array) {
+  bool store(DataArray& array) {
     const auto reals = [](std::vector<double>& to) { return [&to](auto v) { to.push_back(static_cast<double>(v)); }; };
     const auto wholes = [](std::vector<std::int64_t>& to) {
       return [&to](auto v) { to.push_back(vtk::whole_number(v)); };

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 
 #include "meso/brep/measure.hpp"
 #include "meso/brep/triangles.hpp"
@@ -109,6 +110,9 @@ TEST(Gaps, PointsBesideAnEllipsoidOfABSpline) {
     EXPECT_NEAR(norm(foot(p) - p), 0.02, 1e-6) << i;
     EXPECT_LT(norm(foot(on) - on), 1e-6) << i;
   }
+  const Gaps gaps = measure_gaps(*body);
+  EXPECT_NEAR(summed_volume(*body) + gaps.triangles_mm3, 16 * std::numbers::pi, 0.1 * gaps.triangles_abs_mm3);
+  EXPECT_LT(gaps.triangle_mm, 0.2);  // the far side is 2 away, at least
 }
 
 }  // namespace

@@ -126,7 +126,7 @@ class PartFold {
     if (apply.pattern) {
       const Pattern* pattern = evaluation_.find_pattern(apply.pattern->text);
       const auto cells = pattern != nullptr ? evaluation_.cells(*pattern, context_.sink) : std::nullopt;
-      if (!cells || !eval::check_reach(evaluation_, *cells, apply, part, box_of_all(state.solids), context_.sink))
+      if (!cells || !eval::check_reach(evaluation_, *cells, apply, part, box_of_all(state.solids), {}, context_.sink))
         return false;
       const bool is_union = apply.operation == ApplyOperation::union_ && state.solids.empty();
       const bool may_be_graph = is_last && is_union && may_be_beam_graph(*cells);
@@ -139,6 +139,10 @@ class PartFold {
       if (may_be_graph && !graph_first && try_beam_graph(state, *cells, apply)) return true;
       if (context_.sink.has_errors()) return false;
       made = apply_cells(state.solids, *cells, context, counts);
+      if (made && !made->reaches && !state.solids.empty() && eval::must_reach(*cells, apply)) {
+        eval::report_no_reach(evaluation_, *cells, part, context_.sink);
+        return false;
+      }
     } else if (apply.part) {
       made = apply_part(state.solids, apply, context);
     }

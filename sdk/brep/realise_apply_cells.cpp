@@ -75,6 +75,9 @@ class CellStep {
     return union_();
   }
 
+  /// Is one of the cells inside of the body, or across its boundary?
+  [[nodiscard]] bool reaches() const { return is_any_near_ || !drilled_.empty(); }
+
  private:
   /// Whole cells stand for themselves: those rules unite cells that were chosen before.
   [[nodiscard]] ApplyOperation operation() const {
@@ -99,6 +102,7 @@ class CellStep {
       }
       const Place place = boundary_.place(cells_, cell);
       if (place == Place::crossing) ++crossing_;
+      is_any_near_ = is_any_near_ || place != Place::outside;
       if (place == Place::outside && !is_union) continue;
       if (apart && place == Place::inside)
         apart_inside_.push_back(i);
@@ -293,10 +297,13 @@ class CellStep {
   std::vector<std::size_t> apart_inside_, apart_outside_;  ///< clear of everything
   Solids joined_;                                          ///< the rest: touches the boundary or another cell
   std::uint64_t joined_kept_ = 0, crossing_ = 0;
+  bool is_any_near_ = false;
 };
 
-/// Which cells a boundary rule takes, judged by `judged` (bodies or boxes). Empty with a diagnostic on a fault.
-std::optional<std::vector<bool>> taken_cells(const Solids& body, const CellSolids& judged, const FoldContext& context) {
+/// Which cells a boundary rule takes, judged by `judged` (bodies or boxes); `reaches`: one of all is not outside. Empty
+/// with a diagnostic on a fault.
+std::optional<std::vector<bool>> taken_cells(const Solids& body, const CellSolids& judged, const FoldContext& context,
+                                             bool& reaches) {
   const BoundaryRule rule = context.apply.boundary.value_or(BoundaryRule::clip);
   std::vector<bool> taken(judged.cells.size(), true);
   if (rule == BoundaryRule::clip) return taken;
@@ -305,6 +312,7 @@ std::optional<std::vector<bool>> taken_cells(const Solids& body, const CellSolid
   for (std::size_t i = 0; i < judged.cells.size(); ++i) {
     if (i % 64 == 0 && stopped(context)) return {};
     const Place place = boundary.place(judged, judged.cells[i]);
+    reaches = reaches || place != Place::outside;
     if (place != Place::crossing) {
       taken[i] = place == Place::inside;
       const bool far = rule == BoundaryRule::keep_whole || context.clearance <= clear_distance || !taken[i];
@@ -341,15 +349,19 @@ std::optional<FoldStep> apply_cells(const Solids& body, const eval::CellStream& 
   const auto bodies = cell_solids(cells, CellPart::body, context.solid);
   if (!bodies) return {};
   std::vector<bool> taken(bodies->cells.size(), true);
+  bool reaches = false;
   if (context.apply.boundary.value_or(BoundaryRule::clip) != BoundaryRule::clip) {
     const bool by_box = context.apply.test.value_or(InsideTest::box) == InsideTest::box;
     const auto regions = by_box ? cell_solids(cells, CellPart::region, context.solid) : std::nullopt;
     if (by_box && !regions) return {};
-    const auto judged = taken_cells(body, by_box ? *regions : *bodies, context);
+    const auto judged = taken_cells(body, by_box ? *regions : *bodies, context, reaches);
     if (!judged) return {};
     taken = *judged;
   }
-  return CellStep(body, *bodies, context).run(std::move(taken), counts);
+  CellStep cell_step(body, *bodies, context);
+  auto step = cell_step.run(std::move(taken), counts);
+  if (step) step->reaches = reaches || cell_step.reaches();
+  return step;
 }
 
 }  // namespace meso::brep

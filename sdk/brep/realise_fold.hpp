@@ -13,6 +13,7 @@ struct FoldStep {
   Solids solids;
   bool used_booleans = false;
   double pieces_volume = 0;  ///< of what the solids were put together from; 0: not known
+  bool reaches = true;       ///< one of the cells at least is inside of the body or across its boundary
 };
 
 /// What a step needs besides its operands.

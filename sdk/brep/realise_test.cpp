@@ -81,6 +81,31 @@ TEST_F(Realise, EmptyPart) {
   EXPECT_EQ(first_code(), Code::geometry_empty);
 }
 
+// Inside of the body's box, at the middle of a bore or at its wall.
+TEST_F(Realise, AFieldInABoreMissesThePart) {
+  const std::string tube =
+      macrostructure(R"(<difference><box x="-9" y="-9" z="-9" dx="18" dy="18" dz="18"/>)"
+                     R"(<cylinder x1="0" y1="0" z1="-10" x2="0" y2="0" z2="10" radius="5"/></difference>)");
+  const auto ball_at = [](const char* x) {
+    return R"(<unitCells><unitCell id="u"><box x="-1" y="-1" z="-1" dx="2" dy="2" dz="2"/><csg><sphere radius="1"/>)"
+           R"(</csg></unitCell></unitCells><vectorFields><vectorField id="f"><structure records="1">)"
+           R"(<component name="s"/><regularGrid><axis name="x" start=")" +
+           std::string(x) +
+           R"(" spacing="1" count="1"/></regularGrid></structure><embedded>AAAAAAAAAAA=</embedded></vectorField>)"
+           R"(</vectorFields><patterns><pattern id="c" unitCell="u"><scatter field="f"/></pattern></patterns>)";
+  };
+  for (const std::string rule : {"", "boundary=\"dropPartial\""}) {
+    for (const std::string operation : {"difference", "intersection"}) {
+      const std::string cut = part("<apply pattern=\"c\" operation=\"" + operation + "\" " + rule + "/>");
+      EXPECT_FALSE(realised(tube + ball_at("1") + cut));
+      EXPECT_EQ(first_code(), Code::field_misses_part);
+      EXPECT_EQ(sink_.diagnostics().size(), 1u);
+    }
+    EXPECT_TRUE(realised(tube + ball_at("4.5") + part("<apply pattern=\"c\" operation=\"difference\" " + rule + "/>")));
+  }
+  EXPECT_TRUE(realised(tube + ball_at("1") + part(R"(<apply pattern="c" operation="union"/>)")));
+}
+
 TEST_F(Realise, TooManyBooleansAreRefused) {
   RealiseOptions options;
   options.max_boolean_solids = 0;

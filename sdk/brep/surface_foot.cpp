@@ -10,7 +10,7 @@
 namespace meso::brep {
 namespace {
 
-constexpr double search_tolerance = 1e-9, near_mm = 1e-6;
+constexpr double search_tolerance = 1e-9;
 
 }  // namespace
 
@@ -18,7 +18,7 @@ SurfaceFoot::SurfaceFoot(const Surface& surface) : surface_(surface) {
   if (std::holds_alternative<BSplineSurface>(surface)) search_ = new ShapeAnalysis_Surface(to_geom(surface));
 }
 
-Vec3 SurfaceFoot::operator()(Vec3 p) {
+Vec3 SurfaceFoot::operator()(Vec3 p, double near_mm) {
   if (search_.IsNull() || !std::isfinite(p.x + p.y + p.z)) return nearest_point(surface_, p);
   // A search that begins at the last answer can end on the far side of a body: what is not at hand is searched for from
   // anywhere.

@@ -13,7 +13,8 @@ namespace meso::brep {
 class SurfaceFoot {
  public:
   explicit SurfaceFoot(const Surface& surface);
-  [[nodiscard]] Vec3 operator()(Vec3 p);
+  /// `near_mm`: an answer at most that far off is taken without looking for a nearer one elsewhere.
+  [[nodiscard]] Vec3 operator()(Vec3 p, double near_mm = 1e-6);
 
  private:
   const Surface& surface_;

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstring>
 
 #include "evaluation_impl.hpp"
 #include "field_source.hpp"
@@ -74,6 +73,8 @@ class FieldLoader {
     return false;
   }
 
+  std::string memory_text() const { return std::to_string(data_.run.max_memory_bytes >> 20) + " MiB"; }
+
   bool stopped() const {
     report_.sink.report({.code = data_.run.out_of_time() ? Code::limit_time : Code::cancelled});
     return false;
@@ -98,27 +99,23 @@ class FieldLoader {
 
   std::optional<fields::Table> values() const {
     if (const auto* embedded = std::get_if<EmbeddedValues>(&field_.values)) {
-      auto bytes = decode(*embedded);
-      if (!bytes) return std::nullopt;
+      const std::size_t most = fields::base64_bytes_at_most(embedded->base64.size());
+      auto numbers = fields::NumberBlock::make(most / sizeof(double) + 1, data_.run, report_.sink);
+      if (!numbers) return std::nullopt;
+      const auto size = decode(*embedded, reinterpret_cast<std::byte*>(numbers->data()));
+      if (!size) return std::nullopt;
       fields::Table table;
-      std::vector<double> numbers(bytes->size() / sizeof(double));
-      std::memcpy(numbers.data(), bytes->data(), numbers.size() * sizeof(double));
-      table.records = fields::Records::of(std::move(numbers), components().size());
+      table.records = std::move(*numbers).records(*size / sizeof(double) / components().size(), components().size());
       return table;
     }
     return read_with<fields::Table>(std::get<ExternalValues>(field_.values), read_field_file, components().size());
   }
 
   // Validation has counted the bytes.
-  std::optional<std::vector<std::byte>> decode(const EmbeddedValues& embedded) const {
-    std::vector<std::byte> bytes(fields::base64_bytes_at_most(embedded.base64.size()));
-    const auto size = fields::decode_base64(embedded.base64, bytes.data());
-    if (!size) {
-      report_(Code::field_base64, {embedded.id_in_source, {}}, {});
-      return std::nullopt;
-    }
-    bytes.resize(*size);
-    return bytes;
+  std::optional<std::size_t> decode(const EmbeddedValues& embedded, std::byte* out) const {
+    const auto size = fields::decode_base64(embedded.base64, out);
+    if (!size) report_(Code::field_base64, {embedded.id_in_source, {}}, {});
+    return size;
   }
 
   /// Faults of the file keep their place in it and say which element asked for it.
@@ -337,10 +334,15 @@ class FieldLoader {
 
   std::optional<std::vector<std::int64_t>> connectivity(const MeshLocation& mesh, std::size_t corners) const {
     if (const auto* embedded = std::get_if<EmbeddedValues>(&mesh.connectivity)) {
-      const auto bytes = decode(*embedded);
-      if (!bytes) return std::nullopt;
-      std::vector<std::int64_t> numbers(bytes->size() / sizeof(std::int64_t));
-      std::memcpy(numbers.data(), bytes->data(), numbers.size() * sizeof(std::int64_t));
+      const std::size_t most = fields::base64_bytes_at_most(embedded->base64.size());
+      if (most > data_.run.max_memory_bytes) {
+        report_(Code::limit_memory, {field_.id_in_source, {}}, {memory_text()});
+        return std::nullopt;
+      }
+      std::vector<std::int64_t> numbers(most / sizeof(std::int64_t) + 1);
+      const auto size = decode(*embedded, reinterpret_cast<std::byte*>(numbers.data()));
+      if (!size) return std::nullopt;
+      numbers.resize(*size / sizeof(std::int64_t));
       return numbers;
     }
     const auto& external = std::get<ExternalValues>(mesh.connectivity);
@@ -365,8 +367,7 @@ bool FieldLoader::prepare(FieldSource& source) {
     // What the numbers themselves may take is left (number_block.hpp).
     const std::uint64_t needed = source.records() * bytes_per_place, budget = data_.run.max_memory_bytes;
     if (needed > budget - budget / fields::numbers_part)
-      return fault(Code::limit_memory, {field_.id_in_source, {}},
-                   {std::to_string(data_.run.max_memory_bytes >> 20) + " MiB"});
+      return fault(Code::limit_memory, {field_.id_in_source, {}}, {memory_text()});
     points.reserve(source.records());
     for (std::size_t r = 0; r < source.records(); ++r) {
       if (is_stopped(r)) return stopped();

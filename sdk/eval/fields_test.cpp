@@ -205,7 +205,8 @@ TEST(Derived, DirectionsOrientCells) {
 }
 
 /// What check_reach says about pattern "p" against a body of this box.
-std::string reach_of(const std::string& instructions, const Box3& body, const std::string& operation = "difference") {
+std::string reach_of(const std::string& instructions, const Box3& body, const std::string& operation = "difference",
+                     const MayReach& may_reach = {}) {
   const Evaluation evaluation = evaluation_of(
       "<macrostructures><macrostructure id='m'><csg><box dx='1' dy='1' "
       "dz='1'/></csg></macrostructure></macrostructures>" +
@@ -213,7 +214,7 @@ std::string reach_of(const std::string& instructions, const Box3& body, const st
       "<parts><part id='q' macrostructure='m'><apply pattern='p' operation='" + operation + "'/></part></parts>");
   const Part& part = evaluation.document().parts.items.at(0);
   DiagnosticSink sink;
-  const bool good = check_reach(evaluation, stream_of(evaluation), part.steps.at(0), part, body, sink);
+  const bool good = check_reach(evaluation, stream_of(evaluation), part.steps.at(0), part, body, may_reach, sink);
   EXPECT_EQ(good, !sink.has_errors());
   return sink.diagnostics().empty() ? "" : std::string(info(sink.diagnostics()[0].code).name);
 }
@@ -226,6 +227,17 @@ TEST(Scatter, CellsReachTheBodyTheyCut) {
   EXPECT_EQ(reach_of("", far, "intersection"), "FIELD_MISSES_PART");
   EXPECT_EQ(reach_of("", far, "union"), "");
   EXPECT_EQ(reach_of("", Box3{}), "");
+  std::size_t asked = 0;
+  const auto from = [&](double x) {
+    return [&asked, x](const PlacedCell& copy) { return ++asked, copy.world_from_cell.translation.x >= x; };
+  };
+  const Box3 whole{{-9, -9, -9}, {9, 9, 9}};
+  EXPECT_EQ(reach_of("", whole, "difference", from(1)), "");
+  EXPECT_EQ(asked, 2U);
+  EXPECT_EQ(reach_of("", whole, "difference", from(4)), "FIELD_MISSES_PART");
+  EXPECT_EQ(asked, 6U);
+  EXPECT_EQ(reach_of("", whole, "union", from(4)), "");
+  EXPECT_EQ(reach_of("<when test='f.s &gt; 100'/>", whole, "difference", from(4)), "PATTERN_KEEPS_NONE");
   EXPECT_EQ(reach_of("<translate x='2'/>", far), "");
   EXPECT_EQ(reach_of("<when test='f.s &gt; 5'/>", near), "");
   EXPECT_EQ(reach_of("<when test='f.s &gt; 100'/>", near), "PATTERN_KEEPS_NONE");

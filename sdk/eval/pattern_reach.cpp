@@ -10,21 +10,21 @@ namespace {
 
 enum class Found { none, some, failed };
 
-/// `visit` runs a visitor over cells; the first one is enough.
+/// `visit` runs a visitor over cells; the first one that is `wanted` is enough. An empty `wanted` is any.
 template <class Visit>
-Found any(const Visit& visit, DiagnosticSink& sink) {
+Found any(const Visit& visit, const MayReach& wanted, DiagnosticSink& sink) {
   const std::size_t errors = sink.error_count();
   bool found = false;
-  (void)visit([&](const PlacedCell&) {
-    found = true;
-    return false;
+  (void)visit([&](const PlacedCell& cell) {
+    found = !wanted || wanted(cell);
+    return !found && sink.error_count() == errors;
   });
   if (sink.error_count() > errors) return Found::failed;
   return found ? Found::some : Found::none;
 }
 
 Found any_kept(const CellStream& cells, DiagnosticSink& sink) {
-  return any([&](const auto& visitor) { return cells.visit(0, cells.size(), visitor, sink); }, sink);
+  return any([&](const auto& visitor) { return cells.visit(0, cells.size(), visitor, sink); }, {}, sink);
 }
 
 bool has_when(const Pattern& pattern) {
@@ -44,16 +44,24 @@ bool check_keeps_any(const Evaluation& evaluation, const CellStream& cells, Diag
   return found != Found::failed;
 }
 
+bool must_reach(const CellStream& cells, const Apply& apply) {
+  return cells.pattern().scatter && apply.operation != ApplyOperation::union_ && cells.size() > 0;
+}
+
+void report_no_reach(const Evaluation& evaluation, const CellStream& cells, const Part& part, DiagnosticSink& sink) {
+  const Scatter& scatter = *cells.pattern().scatter;
+  Report{evaluation.checked().source(), sink}(Code::field_misses_part, {scatter.id_in_source, "field"},
+                                              {std::to_string(cells.size()), scatter.field.text, part.id.text});
+}
+
 bool check_reach(const Evaluation& evaluation, const CellStream& cells, const Apply& apply, const Part& part,
-                 const Box3& body_mm, DiagnosticSink& sink) {
-  const auto& scatter = cells.pattern().scatter;
-  if (scatter && apply.operation != ApplyOperation::union_ && !body_mm.empty() && cells.size() > 0) {
-    const Found touching = any([&](const auto& visitor) { return cells.visit_touching(body_mm, visitor, sink); }, sink);
+                 const Box3& body_mm, const MayReach& may_reach, DiagnosticSink& sink) {
+  if (must_reach(cells, apply) && !body_mm.empty()) {
+    const Found touching =
+        any([&](const auto& visitor) { return cells.visit_touching(body_mm, visitor, sink); }, may_reach, sink);
     if (touching != Found::none) return touching == Found::some;
     if (const Found kept = any_kept(cells, sink); kept != Found::none) {
-      if (kept == Found::some)
-        Report{evaluation.checked().source(), sink}(Code::field_misses_part, {scatter->id_in_source, "field"},
-                                                    {std::to_string(cells.size()), scatter->field.text, part.id.text});
+      if (kept == Found::some) report_no_reach(evaluation, cells, part, sink);
       return false;
     }
   }

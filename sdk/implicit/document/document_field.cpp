@@ -91,8 +91,13 @@ class PartMaker {
 
   std::optional<Field> with_cells(const Body& body, const Part& part, const Apply& apply) {
     const auto cells = evaluation_.cells(*evaluation_.find_pattern(apply.pattern->text), report_.sink());
-    if (!cells || !eval::check_reach(evaluation_, *cells, apply, part, body ? body->bounds() : Box3{}, report_.sink()))
-      return std::nullopt;
+    if (!cells) return std::nullopt;
+    const eval::MayReach may_reach = [&](const eval::PlacedCell& cell) {
+      const auto own = field_of_cell(evaluation_, *cells, cell, shapes_, report_);
+      return own && !own->bounds().empty() && body->interval(own->bounds()).lo <= 0;
+    };
+    const Box3 box = body ? body->bounds() : Box3{};
+    if (!eval::check_reach(evaluation_, *cells, apply, part, box, may_reach, report_.sink())) return std::nullopt;
     const BoundaryRule rule = apply.boundary.value_or(BoundaryRule::clip);
     KeepCell keep;
     if (rule != BoundaryRule::clip) {

@@ -296,6 +296,27 @@ TEST(DocumentField, PartsInCellsAndImports) {
   expect_agreement(document, "p", 20000);
 }
 
+// Inside of the body's box, at the middle of a bore or at its wall.
+TEST(DocumentField, AFieldInABoreMissesThePart) {
+  const auto told_of = [](const std::string& x, const std::string& operation) {
+    const TestDocument document(
+        macrostructure(
+            "<difference><box x='-9' y='-9' z='-9' dx='18' dy='18' dz='18'/><cylinder x1='0' y1='0' z1='-10' "
+            "x2='0' y2='0' z2='10' radius='5'/></difference>") +
+        "<unitCells><unitCell id='u'><csg><sphere radius='1'/></csg></unitCell></unitCells><vectorFields><vectorField "
+        "id='f'><structure records='1'><component name='s'/><regularGrid><axis name='x' start='" +
+        x +
+        "' spacing='1' count='1'/></regularGrid></structure><embedded>AAAAAAAAAAA=</embedded></vectorField>"
+        "</vectorFields><patterns><pattern id='c' unitCell='u'><scatter field='f'/></pattern></patterns>" +
+        part_of("<apply pattern='c' operation='" + operation + "'/>"));
+    return document.made ? Code::internal : document.code();
+  };
+  EXPECT_EQ(told_of("1", "difference"), Code::field_misses_part);
+  EXPECT_EQ(told_of("1", "intersection"), Code::field_misses_part);
+  EXPECT_EQ(told_of("1", "union"), Code::internal);
+  EXPECT_EQ(told_of("4.5", "difference"), Code::internal);
+}
+
 TEST(DocumentField, WhatCannotBeIsTold) {
   const auto code = [](const std::string& text) {
     TestDocument document(text);
