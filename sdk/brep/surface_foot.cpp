@@ -18,17 +18,41 @@ SurfaceFoot::SurfaceFoot(const Surface& surface) : surface_(surface) {
   if (std::holds_alternative<BSplineSurface>(surface)) search_ = new ShapeAnalysis_Surface(to_geom(surface));
 }
 
+// Newton's method for the zero of the derivatives of |S(u, v) - p|^2 / 2.
+std::optional<gp_Pnt2d> SurfaceFoot::from_last(Vec3 p) const {
+  constexpr int most_steps = 12;
+  constexpr double flat = 1e-10;  // of the angle between the parameter lines
+  double first[2], last[2];
+  search_->Bounds(first[0], last[0], first[1], last[1]);
+  double uv[2] = {last_.X(), last_.Y()};
+  for (int n = 0; n < most_steps; ++n) {
+    gp_Pnt s;
+    gp_Vec su, sv, suu, svv, suv;
+    search_->Adaptor3d()->D2(uv[0], uv[1], s, su, sv, suu, svv, suv);
+    const gp_Vec r(to_pnt(p), s);
+    const double a = su * su + r * suu, b = su * sv + r * suv, c = sv * sv + r * svv;
+    const double det = a * c - b * b, gu = r * su, gv = r * sv;
+    if (!(det > flat * (su * su) * (sv * sv))) return {};
+    const double step[2] = {(b * gv - c * gu) / det, (b * gu - a * gv) / det};
+    for (int i = 0; i < 2; ++i) uv[i] = std::min(std::max(uv[i] + step[i], first[i]), last[i]);
+    if (std::abs(step[0]) * su.Magnitude() + std::abs(step[1]) * sv.Magnitude() < search_tolerance)
+      return gp_Pnt2d(uv[0], uv[1]);
+  }
+  return {};
+}
+
 Vec3 SurfaceFoot::operator()(Vec3 p, double near_mm) {
   if (search_.IsNull() || !std::isfinite(p.x + p.y + p.z)) return nearest_point(surface_, p);
   // A search that begins at the last answer can end on the far side of a body: what is not at hand is searched for from
   // anywhere.
   const auto distance = [&](const gp_Pnt2d& uv) { return norm(to_vec(search_->Value(uv)) - p); };
-  gp_Pnt2d nearest = has_last_ ? search_->NextValueOfUV(last_, to_pnt(p), search_tolerance) : gp_Pnt2d();
-  if (!has_last_ || distance(nearest) > near_mm) {
-    const gp_Pnt2d anywhere = search_->ValueOfUV(to_pnt(p), search_tolerance);
-    if (!has_last_ || distance(anywhere) < distance(nearest)) nearest = anywhere;
+  const std::optional<gp_Pnt2d> beside = has_last_ ? from_last(p) : std::nullopt;
+  if (beside && distance(*beside) <= near_mm) {
+    last_ = *beside;
+  } else {
+    last_ = search_->ValueOfUV(to_pnt(p), search_tolerance);
+    if (beside && distance(*beside) < distance(last_)) last_ = *beside;
   }
-  last_ = nearest;
   has_last_ = true;
   return to_vec(search_->Value(last_));
 }

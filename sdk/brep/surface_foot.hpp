@@ -2,6 +2,8 @@
 #pragma once
 // The point of a surface that is nearest to another point. Private.
 
+#include <optional>
+
 #include "meso/brep/body.hpp"
 #include "occt.hpp"
 
@@ -17,6 +19,8 @@ class SurfaceFoot {
   [[nodiscard]] Vec3 operator()(Vec3 p, double near_mm = 1e-6);
 
  private:
+  [[nodiscard]] std::optional<gp_Pnt2d> from_last(Vec3 p) const;
+
   const Surface& surface_;
   Handle(ShapeAnalysis_Surface) search_;
   gp_Pnt2d last_;
