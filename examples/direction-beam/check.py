@@ -156,9 +156,9 @@ def check_part(program):
     voids = np.array([-volume for volume in shells if volume < 0])
     expect("voids in the STEP file as it is read", len(voids) == 1120, len(voids))
     off = np.abs(voids / VOID - 1).max(initial=0)
-    expect("their volumes, relative", len(voids) > 0 and off < 1e-4, f"{off:.1e}")
+    expect("their volumes, relative", len(voids) > 0 and off < 1e-9, f"{off:.1e}")
     bodies = [volume for volume in shells if volume > 0]
-    expect("volume of the skin around them", len(bodies) == 1 and abs(bodies[0] / SOLID - 1) < 1e-6, bodies)
+    expect("volume of the skin around them", len(bodies) == 1 and abs(bodies[0] / SOLID - 1) < 1e-9, bodies)
 
 
 def main():
