@@ -10,6 +10,9 @@
 #include "meso/base/number.hpp"
 #include "meso/implicit/surfaces.hpp"
 #include "meso/operations/sdf.hpp"
+#ifdef MESO_CLI_EVAL
+#include "meso/operations/words.hpp"
+#endif
 #include "meso/sdf/vocabulary.hpp"
 #include "run.hpp"
 #include "sdf_volumes.hpp"
@@ -56,6 +59,7 @@ void print_help(const CLI::App& flags) {
     fmt::print("  {:<36}{}\n", argument.empty() ? word : fmt::format("{} {}", word, argument), meaning);
   };
   line("tpms.NAME", "", "all points where a periodic surface's expression is negative: tpms.gyroid");
+  line("strut.NAME", "r", "the library's cells of struts, edge 1, radius r: strut.bcc strut.octet strut.kelvin ...");
   for (const sdf::Vocable& v : sdf::vocabulary()) line(v.word, v.argument, v.meaning);
   fmt::print("\nSurfaces (docs/specification/surfaces.md):\n");
   std::string names;
@@ -71,6 +75,8 @@ void print_help(const CLI::App& flags) {
   line("-b", "x0,y0,z0,x1,y1,z1", "the box (the solid's own, unbounded sides at -1 and 1)");
   line("-s", "n | nx,ny,nz", "samples in all, or along the axes (100^3)");
   line("-o", "PATH", "the mesh: .ply .stl .obj .off .vtk (out.ply); .vtu .msh .inp .nrrd .vti .h5 .svg .png");
+  line("", "", "or the same design as a document: .meso");
+  line("--print DOCUMENT", "", "the words that make the same mesh, instead of a mesh");
   line("@PATH", "", "the words of that file");
   line("-h --help", "", "this");
   line("--version", "", "the version");
@@ -151,12 +157,41 @@ void heed_flags_before_reading(Run& run, const std::vector<std::string>& words) 
   }
 }
 
+#ifdef MESO_CLI_EVAL
+bool is_document(const std::string& path) { return path.ends_with(".meso"); }
+
+/// A design as a document; what only meshes have is refused.
+int write_document(Run& run, const sdf::Program& program, const operations::SdfOptions& options) {
+  if (options.polish || options.no_slivers || options.double_coordinates || options.sharp || options.tolerance > 0 ||
+      options.simplify > 0 || options.strict_math || options.ascii)
+    run.usage_error("a document states the design; --sharp, --tolerance and the like are flags of convert");
+  else
+    operations::write_words(program, options.existing, options.run, run.sink);
+  return run.finish(Json{{"output", program.output}});
+}
+
+int print_document(Run& run, const std::string& path) {
+  const auto line = operations::print_words(path, run.options(), run.sink);
+  if (!line) return run.finish(Json::object());
+  if (run.flags.json) return run.finish(Json{{"words", *line}});
+  const int code = run.finish();
+  fmt::print("{}\n", *line);
+  return code;
+}
+#endif
+
 }  // namespace
 
 void add_sdf(CLI::App& app) { app.add_subcommand("sdf", description)->prefix_command(); }
 
 int sdf_verb(Run& run, const std::vector<std::string>& words) {
   heed_flags_before_reading(run, words);
+#ifdef MESO_CLI_EVAL
+  if (words.size() > 1 && words[0] == "--print") {
+    if (words.size() == 2 || (words.size() == 3 && words[2] == "--json")) return print_document(run, words[1]);
+    return run.usage_error("--print takes a document, and no words"), run.finish(Json::object());
+  }
+#endif
   CLI::App flags;
   flags.set_help_flag();  // -h is a word
   operations::SdfOptions options;
@@ -177,6 +212,9 @@ int sdf_verb(Run& run, const std::vector<std::string>& words) {
   options.existing = run.existing_file();
   options.measure = run.flags.json;
   if (run.sink.has_errors()) return run.finish(Json::object());
+#ifdef MESO_CLI_EVAL
+  if (is_document(program->output)) return write_document(run, *program, options);
+#endif
   if (!operations::check_volume_options(program->output, volume, run.sink)) return run.finish(Json::object());
   if (operations::is_volume_output(program->output)) {
     if (options.polish || options.no_slivers || options.double_coordinates || options.sharp || options.tolerance > 0 ||

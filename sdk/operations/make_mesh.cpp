@@ -6,6 +6,7 @@
 #include <system_error>
 
 #include "file_extension.hpp"
+#include "load_sdf_mesh.hpp"
 #include "measured_mesh_sink.hpp"
 #include "mesh_grid.hpp"
 #include "meso/base/memory_mesh_sink.hpp"
@@ -18,6 +19,9 @@
 #include "meso/import_surface_mesh/read_surface_mesh.hpp"
 #include "meso/operations/macrostructure_distance.hpp"
 #include "meso/package/open_document.hpp"
+#include "meso/sdf/build_field.hpp"
+#include "meso/sdf/thinnest_wall.hpp"
+#include "meso/sdf_document/words_and_documents.hpp"
 #include "stopwatch.hpp"
 
 namespace meso::operations {
@@ -45,7 +49,24 @@ struct Built {
   brep::CellCounts cells;
 };
 
+/// A document that is words means what these mean, to the bit.
+std::optional<Built> build_words(const sdf::Program& program, const std::string& part, const MakeOptions& options,
+                                 DiagnosticSink& sink) {
+  const auto load = [&](const std::string& path, DiagnosticSink& told) {
+    return load_sdf_mesh(path, options.run, told);
+  };
+  const auto field = sdf::build_field(program, load, sink);
+  if (!field) return std::nullopt;
+  const auto wall = sdf::thinnest_wall(program);
+  return Built{.field = *field, .names = part, .smallest_feature_mm = wall ? wall->thickness : HUGE_VAL};
+}
+
 std::optional<Built> build(const eval::Evaluation& evaluation, const MakeOptions& options, DiagnosticSink& sink) {
+  sdf::WhyNot why_not;
+  if (const auto program = sdf::program_of(evaluation, options.part, why_not)) {
+    const auto& parts = evaluation.document().build.items;
+    return build_words(*program, options.part.empty() ? parts.front().part.text : options.part, options, sink);
+  }
   const implicit::DocumentFieldOptions field_options{
       .imports = [&](const eval::ImportShape& import,
                      DiagnosticSink& told) { return import_mesh(import, options.run, told); },
@@ -82,7 +103,10 @@ bool stream_mesh(const Built& built, const implicit::Grid& grid, const MakeOptio
   if (!options.tolerance_mm && !options.simplify_mm) {
     const auto source = implicit::check_grid(grid, options.run, sink) ? source_on(grid) : nullptr;
     const auto contoured =
-        source ? implicit::contour(*source, into, {.sharp = options.sharp}, options.run, sink) : std::nullopt;
+        source ? implicit::contour(*source, into,
+                                   {.coordinate_step = implicit::float_step(grid.box), .sharp = options.sharp},
+                                   options.run, sink)
+               : std::nullopt;
     if (contoured) tell(grid, contoured->triangles);
     return contoured.has_value();
   }

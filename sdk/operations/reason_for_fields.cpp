@@ -56,6 +56,10 @@ std::string reason_for_fields(const eval::Evaluation& evaluation, const std::str
     std::string reason = search.in(*item.part);
     if (!reason.empty()) return reason;
   }
+  for (const BuildItem& item : evaluation.document().build)
+    if (item.mesh && item.mesh->samples && !item.mesh->deflection && !item.mesh->angle &&
+        (part.empty() || part == item.part.text))
+      return "the <mesh> of part '" + item.part.text + "' states samples";
   return {};
 }
 

@@ -9,6 +9,7 @@
 #include <system_error>
 #include <type_traits>
 
+#include "load_sdf_mesh.hpp"
 #include "measured_mesh_sink.hpp"
 #include "meso/base/memory_mesh_sink.hpp"
 #include "meso/base/number.hpp"
@@ -56,13 +57,6 @@ bool go_on(const RunOptions& run, DiagnosticSink& sink) {
   if (!run.should_stop()) return true;
   sink.report({.code = run.out_of_time() ? Code::limit_time : Code::cancelled});
   return false;
-}
-
-std::shared_ptr<const implicit::ExternalField> load_field(const std::string& path, const RunOptions& run,
-                                                          DiagnosticSink& sink) {
-  if (!go_on(run, sink)) return nullptr;
-  const auto mesh = read_surface_mesh_file(path, sink, run);
-  return mesh && go_on(run, sink) ? implicit::MeshField::make(*mesh, path, run, sink) : nullptr;
 }
 
 implicit::Grid grid_of(const sdf::Program& program, const Box3& box) {
@@ -131,14 +125,6 @@ std::unique_ptr<implicit::GridSource> Job::source_on(const implicit::Grid& grid)
   return implicit::compile(field_->term(), grid, {.strict_math = options_.strict_math}, options_.run, sink_);
 }
 
-/// The step of the largest coordinate in a box, as a float.
-double float_step(const Box3& box) {
-  double reach = 0;
-  for (std::size_t axis = 0; axis < 3; ++axis)
-    reach = std::max({reach, std::abs(box.min[axis]), std::abs(box.max[axis])});
-  return std::nextafter(static_cast<float>(reach), HUGE_VALF) - static_cast<float>(reach);
-}
-
 /// From a tolerance, or simplified: made in memory, then written.
 bool Job::make_accurate(MeshSink& into) {
   const auto made =
@@ -179,7 +165,7 @@ bool Job::contour_into(MeshSink& writer) {
   const auto contoured =
       implicit::contour(*source, into,
                         {.polish = options_.polish,
-                         .coordinate_step = std::is_same_v<Real, float> ? float_step(report_.grid.box) : 0,
+                         .coordinate_step = std::is_same_v<Real, float> ? implicit::float_step(report_.grid.box) : 0,
                          .sharp = options_.sharp,
                          .collapse_slivers = options_.no_slivers},
                         options_.run, sink_);
@@ -260,7 +246,8 @@ bool Job::warn_of_rounding(const Output& output) const {
   double reach = 0;
   for (std::size_t axis = 0; axis < 3; ++axis)
     reach = std::max({reach, std::abs(grid.box.min[axis]), std::abs(grid.box.max[axis])});
-  const double step = float_step(grid.box), spacing = std::min({grid.spacing(0), grid.spacing(1), grid.spacing(2)});
+  const double step = implicit::float_step(grid.box),
+               spacing = std::min({grid.spacing(0), grid.spacing(1), grid.spacing(2)});
   if (step <= 4e-3 * spacing) return false;
   sink_.report({.code = Code::sdf_far,
                 .args = {format_number(reach), format_number(step), program_.output, format_number(spacing)}});
@@ -269,7 +256,9 @@ bool Job::warn_of_rounding(const Output& output) const {
 
 std::optional<SdfReport> Job::run(const Output& output) {
   Stopwatch watch;
-  const auto load = [&](const std::string& path, DiagnosticSink& told) { return load_field(path, options_.run, told); };
+  const auto load = [&](const std::string& path, DiagnosticSink& told) {
+    return load_sdf_mesh(path, options_.run, told);
+  };
   field_ = sdf::build_field(program_, load, sink_);
   if (!field_ || !go_on(options_.run, sink_)) return std::nullopt;
   const auto box = sdf::box_of(program_, *field_, sink_);
@@ -295,6 +284,20 @@ std::optional<SdfReport> Job::run(const Output& output) {
 }
 
 }  // namespace
+
+std::shared_ptr<const implicit::ExternalField> load_sdf_mesh(const std::string& path, const RunOptions& run,
+                                                             DiagnosticSink& sink) {
+  if (!go_on(run, sink)) return nullptr;
+  const auto mesh = read_surface_mesh_file(path, sink, run);
+  return mesh && go_on(run, sink) ? implicit::MeshField::make(*mesh, path, run, sink) : nullptr;
+}
+
+std::optional<Box3> sdf_box(const sdf::Program& program, const RunOptions& run, DiagnosticSink& sink) {
+  const auto load = [&](const std::string& path, DiagnosticSink& told) { return load_sdf_mesh(path, run, told); };
+  const auto field = sdf::build_field(program, load, sink);
+  const auto box = field ? sdf::box_of(program, *field, sink) : std::nullopt;
+  return box ? std::optional(box->box) : std::nullopt;
+}
 
 std::optional<SdfReport> run_sdf(const sdf::Program& program, const SdfOptions& options, DiagnosticSink& sink) {
   const auto output = output_of(program.output, options, sink);

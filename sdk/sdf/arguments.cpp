@@ -63,9 +63,41 @@ std::optional<TextFault> formula_fault(std::string_view text) {
   return parsed.expression ? std::nullopt : std::optional(parsed.fault);
 }
 
+bool names_point(std::string_view text) {
+  const Parsed parsed = parse(text, {"tau", "x", "y", "z"});
+  return parsed.expression && std::ranges::any_of(parsed.expression->names(), [](const expr::Name& name) {
+           return name.text.size() == 1;  // tau is the one other
+         });
+}
+
+std::optional<TextFault> formulas_fault(std::string_view text, std::size_t count) {
+  const auto items = expr::split_list(text);
+  if (items.size() != count) return read_numbers(text, {count}).fault;
+  bool depends = false;
+  for (const auto& item : items) {
+    auto fault = formula_fault(item.text);
+    if (fault) return fault->offset += item.offset, fault;
+    depends = depends || names_point(item.text);
+  }
+  return depends ? std::nullopt : read_numbers(text, {count}).fault;
+}
+
+implicit::Term term_of(std::string_view formula) {
+  const auto parsed = expr::parse_expression(formula, unit);
+  std::vector<implicit::Term> meanings;
+  for (const expr::Name& name : parsed.expression->names())
+    meanings.push_back(name.text == "tau" ? implicit::Term::constant(2 * std::numbers::pi)
+                                          : implicit::Term::coordinate(static_cast<std::size_t>(name.text[0] - 'x')));
+  return implicit::Term::from_expression(*parsed.expression, meanings);
+}
+
 std::string fault_of(const Instruction& instruction) {
+  if (instruction.verb == Verb::density && instruction.text.empty() &&
+      !(instruction.numbers[0] > 0 && instruction.numbers[0] < 1))
+    return "a share lies between 0 and 1";
   const auto& n = instruction.numbers;
   const Vec3 v{n[0], n[1], n[2]};
+  const bool is_graded = !instruction.text.empty();
   std::optional<Diagnostic> fault;
   switch (instruction.verb) {
     case Verb::cone:
@@ -77,11 +109,25 @@ std::string fault_of(const Instruction& instruction) {
     case Verb::capsule:
       fault = implicit::check_size("radius", n[6]);
       break;
+    case Verb::strut:
+      if (!(n[0] < 0.25)) return "a strut's radius is less than a quarter of the cell's edge";
+      fault = implicit::check_size("radius", n[0]);
+      break;
+    case Verb::smooth_union:
+      if (n[0] < 0) return "a fillet's radius is not negative";
+      break;
+    case Verb::repeat:
+      if (v.x < 0 || v.y < 0 || v.z < 0 || v == Vec3{}) return "steps are positive, 0 along an axis without repetition";
+      break;
+    case Verb::cylindrical:
+    case Verb::spherical:
+      if (n[0] == 0 || (instruction.verb == Verb::spherical && n[1] == 0)) return "it would not be bent";
+      break;
     case Verb::shell:
-      fault = implicit::check_shell(n[0]);
+      if (!is_graded) fault = implicit::check_shell(n[0]);
       break;
     case Verb::eccentric_shell:
-      fault = implicit::check_eccentric_shell(n[0], n[1]);
+      if (!is_graded) fault = implicit::check_eccentric_shell(n[0], n[1]);
       break;
     case Verb::scale:
       fault = implicit::check_scale(v);

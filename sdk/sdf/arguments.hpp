@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "meso/expr/expression.hpp"
+#include "meso/implicit/term.hpp"
 #include "meso/sdf/program.hpp"
 
 namespace meso::sdf {
@@ -29,6 +30,13 @@ struct NumberList {
 
 /// Nothing if `text` is an expression of x, y, z.
 [[nodiscard]] std::optional<TextFault> formula_fault(std::string_view text);
+/// The same of a list of `count`. REQUIRES: a text that holds no such list of numbers.
+[[nodiscard]] std::optional<TextFault> formulas_fault(std::string_view text, std::size_t count);
+/// Whether a formula asks where it is.
+[[nodiscard]] bool names_point(std::string_view text);
+
+/// x, y, z and tau known. REQUIRES: a text without fault.
+[[nodiscard]] implicit::Term term_of(std::string_view formula);
 
 /// Why the numbers of an instruction make no sense: "a shell's thickness is not negative". Empty: they do.
 [[nodiscard]] std::string fault_of(const Instruction& instruction);

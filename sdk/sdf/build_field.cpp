@@ -1,102 +1,198 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "meso/sdf/build_field.hpp"
 
-#include <cassert>
+#include <array>
 #include <cmath>
 #include <map>
 #include <numbers>
 
+#include "arguments.hpp"
 #include "meso/base/number.hpp"
+#include "meso/implicit/density_table.hpp"
+#include "meso/implicit/surfaces.hpp"
+#include "meso/sdf/solid_tree.hpp"
+#include "strut_cells.hpp"
 
 namespace meso::sdf {
 
+using expr::Op;
 using implicit::Field;
+using implicit::Term;
 
 namespace {
+
+/// A solid, and after which steps along the axes it repeats (0: not, or nobody knows).
+struct Solid {
+  Field field;
+  Vec3 period{};
+};
+
+Term fraction_of_turn(const Term& y, const Term& x, double units) {
+  return (units / (2 * std::numbers::pi)) * Term::apply(Op::atan2, {y, x});
+}
+
+/// Where the solid's point stands that is seen at (x, y, z).
+std::array<Term, 3> bent(const Instruction& instruction) {
+  const auto& n = instruction.numbers;
+  const Term x = Term::coordinate(0), y = Term::coordinate(1), z = Term::coordinate(2);
+  const Term around_axis = x * x + y * y;
+  switch (instruction.verb) {
+    case Verb::cylindrical:
+      return {sqrt(around_axis), fraction_of_turn(y, x, n[0]), z};
+    case Verb::spherical:
+      // Half a turn from pole to pole.
+      return {sqrt(around_axis + z * z), fraction_of_turn(y, x, n[0]),
+              fraction_of_turn(sqrt(around_axis), z, 2 * n[1])};
+    default:
+      break;
+  }
+  std::array<Term, 3> folded{x, y, z};
+  for (std::size_t a = 0; a < 3; ++a)
+    if (n[a] > 0) folded[a] = folded[a] - n[a] * Term::apply(Op::floor, {(1 / n[a]) * folded[a] + 0.5});
+  return folded;
+}
 
 class Builder {
  public:
   Builder(const MeshLoader& load_mesh, DiagnosticSink& sink) : load_mesh_(load_mesh), sink_(sink) {}
 
   std::optional<Field> build(const Program& program) {
-    for (const Instruction& instruction : program.instructions) {
-      auto made = carry_out(instruction);
-      if (!made) return std::nullopt;
-      stack_.push_back(std::move(*made));
+    const SolidTree tree = solid_tree(program);
+    for (const SolidTree::Node& node : tree.nodes) {
+      auto solid = made(node);
+      if (!solid) return std::nullopt;
+      solids_.push_back(std::move(*solid));
     }
-    assert(stack_.size() == 1);  // parse_program() counted
-    return std::move(stack_.back());
+    return std::move(solids_.back().field);
   }
 
  private:
-  std::optional<Field> carry_out(const Instruction& instruction) {
+  std::optional<Solid> made(const SolidTree::Node& node) {
+    const Instruction& instruction = *node.made_by;
+    if (node.of.empty()) return leaf(instruction);
+    const Solid& below = solids_[node.of[0]];
+    return node.of.size() == 1 ? changed(instruction, below) : Solid{joined(instruction, below.field, node)};
+  }
+
+  std::optional<Solid> leaf(const Instruction& instruction) {
     const auto& n = instruction.numbers;
     const Vec3 v{n[0], n[1], n[2]};
     switch (instruction.verb) {
       case Verb::ball:
-        return Field::ball();
+        return Solid{Field::ball()};
       case Verb::cylinder:
-        return Field::cylinder();
+        return Solid{Field::cylinder()};
       case Verb::box:
-        return Field::box();
+        return Solid{Field::box()};
       case Verb::cone:
-        return Field::cone(n[0], n[1], n[2]);
+        return Solid{Field::cone(n[0], n[1], n[2])};
       case Verb::torus:
-        return Field::torus(n[0], n[1]);
+        return Solid{Field::torus(n[0], n[1])};
       case Verb::capsule:
-        return Field::capsule(v, {n[3], n[4], n[5]}, n[6]);
+        return Solid{Field::capsule(v, {n[3], n[4], n[5]}, n[6])};
       case Verb::half_space:
-        return Field::half_space(v, n[3]);
+        return Solid{Field::half_space(v, n[3])};
       case Verb::surface:
-        return Field::surface(instruction.text, sink_);
-      case Verb::expression:
-        return expression(instruction);
-      case Verb::file:
+        return surface(instruction);
+      case Verb::strut: {
+        const StrutLattice lattice = strut_lattice(instruction.text, n[0]);
+        return Solid{Field::from_term(lattice.term), lattice.period};
+      }
+      case Verb::expression: {
+        const implicit::Parameter tau[] = {{"tau", 2 * std::numbers::pi}};
+        const auto field = Field::expression(instruction.text, sink_, tau);
+        return field ? std::optional(Solid{*field}) : std::nullopt;
+      }
+      default:
         return mesh(instruction);
-      case Verb::complement:
-        return pop().complement();
-      case Verb::offset:
-        return pop().offset(n[0]);
-      case Verb::shell:
-        return pop().shell(n[0]);
-      case Verb::eccentric_shell:
-        return pop().eccentric_shell(n[0], n[1]);
-      case Verb::move:
-        return pop().translated(v);
-      case Verb::scale:
-        return v.x == v.y && v.y == v.z ? pop().scaled(v.x) : pop().scaled(v);
-      case Verb::rotate:
-        return pop().rotated(v, n[3]);
-      case Verb::orient:
-        return pop().oriented(v);
-      case Verb::mirror:
-        return pop().mirrored(v);
-      case Verb::union_of:
-        return pair(implicit::union_of);
-      case Verb::intersection:
-        return pair(implicit::intersection_of);
-      case Verb::difference:
-        return pair(implicit::difference_of);
     }
-    return std::nullopt;
   }
 
-  Field pop() {
-    Field top = std::move(stack_.back());
-    stack_.pop_back();
-    return top;
-  }
-  Field pair(Field (*join)(const Field&, const Field&)) {
-    const Field above = pop();
-    return join(pop(), above);
+  std::optional<Solid> changed(const Instruction& instruction, const Solid& solid) {
+    const auto& n = instruction.numbers;
+    const Vec3 v{n[0], n[1], n[2]};
+    const Field& f = solid.field;
+    switch (instruction.verb) {
+      case Verb::complement:
+        return Solid{f.complement(), solid.period};
+      case Verb::offset:
+      case Verb::shell:
+      case Verb::eccentric_shell:
+        return Solid{instruction.text.empty() ? level(instruction, f) : graded_level(instruction, f), solid.period};
+      case Verb::density:
+        return filled(instruction, solid);
+      case Verb::move:
+        return Solid{f.translated(v), solid.period};
+      case Verb::scale:
+        return Solid{v.x == v.y && v.y == v.z ? f.scaled(v.x) : f.scaled(v),
+                     {std::abs(v.x) * solid.period.x, std::abs(v.y) * solid.period.y, std::abs(v.z) * solid.period.z}};
+      case Verb::rotate:
+        return Solid{f.rotated(v, n[3])};
+      case Verb::orient:
+        return Solid{f.oriented(v)};
+      case Verb::mirror:
+        return Solid{f.mirrored(v)};
+      default:
+        break;
+    }
+    const Term term = f.term();
+    if (term.has_external())
+      return fault(instruction, "meshes and shares that differ from point to point cannot be bent or repeated");
+    const Term there = term.with(bent(instruction));
+    return Solid{Field::from_term(there), instruction.verb == Verb::repeat ? v : Vec3{}};
   }
 
-  std::optional<Field> expression(const Instruction& instruction) {
-    const implicit::Parameter tau[] = {{"tau", 2 * std::numbers::pi}};
-    return Field::expression(instruction.text, sink_, tau);
+  static Field level(const Instruction& instruction, const Field& f) {
+    const auto& n = instruction.numbers;
+    if (instruction.verb == Verb::offset) return f.offset(n[0]);
+    return instruction.verb == Verb::shell ? f.shell(n[0]) : f.eccentric_shell(n[0], n[1]);
+  }
+  static Field graded_level(const Instruction& instruction, const Field& field) {
+    const Term f = field.term();
+    std::vector<Term> at;
+    for (const expr::ListItem& item : expr::split_list(instruction.text)) at.push_back(term_of(item.text));
+    if (instruction.verb == Verb::offset) return Field::from_term(f - at[0]);
+    if (instruction.verb == Verb::shell) return Field::from_term(abs(f) - 0.5 * at[0]);
+    return Field::from_term(max(at[0] - f, f - at[1]));
   }
 
-  std::optional<Field> mesh(const Instruction& instruction) {
+  /// {f < level} holds the share of each period.
+  std::optional<Solid> filled(const Instruction& instruction, const Solid& solid) {
+    const Vec3 period = solid.period;
+    if (!(period.x > 0 && period.y > 0 && period.z > 0))
+      return fault(instruction, "what lies below it does not repeat along all axes, so it has no period to fill");
+    const Term f = solid.field.term();
+    const auto table = std::make_shared<const implicit::DensityTable>(
+        [&](auto) { return f; }, implicit::DensityTable::Room{{}, period}, std::vector<implicit::Interval>{});
+    if (instruction.text.empty()) return Solid{solid.field.offset(table->level(instruction.numbers[0], {})), period};
+    return Solid{Field::from_term(f - density_level(table, term_of(instruction.text), {}))};
+  }
+
+  Field joined(const Instruction& instruction, const Field& below, const SolidTree::Node& node) const {
+    const Field& above = solids_[node.of[1]].field;
+    switch (instruction.verb) {
+      case Verb::union_of:
+        return union_of(below, above);
+      case Verb::intersection:
+        return intersection_of(below, above);
+      case Verb::difference:
+        return difference_of(below, above);
+      case Verb::smooth_union:
+        return union_of(below, above, instruction.numbers[0]);
+      default:
+        break;
+    }
+    const Term a = below.term(), weight = term_of(instruction.text);
+    return Field::from_term(a + weight * (above.term() - a));
+  }
+
+  std::optional<Solid> surface(const Instruction& instruction) {
+    const auto field = Field::surface(instruction.text, sink_);
+    const double along_y = implicit::find_surface(instruction.text)->name == "q-star-hex" ? std::numbers::sqrt3 : 1;
+    return field ? std::optional(Solid{*field, {1, along_y, 1}}) : std::nullopt;
+  }
+
+  std::optional<Solid> mesh(const Instruction& instruction) {
     auto& loaded = loaded_[instruction.text];
     if (!loaded) {
       DiagnosticSink told;
@@ -106,12 +202,21 @@ class Builder {
         sink_.report(std::move(d));
       }
     }
-    return loaded ? std::optional(Field::external(loaded)) : std::nullopt;
+    return loaded ? std::optional(Solid{Field::external(loaded)}) : std::nullopt;
+  }
+
+  std::nullopt_t fault(const Instruction& instruction, std::string why) {
+    const Word& word = instruction.word;
+    Diagnostic d{.code = Code::sdf_value,
+                 .args = {std::to_string(word.number), std::to_string(instruction.depth), word.text, std::move(why)}};
+    point_at(d, word);
+    sink_.report(std::move(d));
+    return std::nullopt;
   }
 
   const MeshLoader& load_mesh_;
   DiagnosticSink& sink_;
-  std::vector<Field> stack_;
+  std::vector<Solid> solids_;
   std::map<std::string, std::shared_ptr<const implicit::ExternalField>> loaded_;
 };
 
@@ -121,8 +226,11 @@ std::optional<Field> build_field(const Program& program, const MeshLoader& load_
   return Builder(load_mesh, sink).build(program);
 }
 
+// As documents state boxes, which mean the same to the last bit.
+Box3 corner_and_size(const Box3& box) { return {box.min, box.min + (box.max - box.min)}; }
+
 std::optional<ProgramBox> box_of(const Program& program, const Field& field, DiagnosticSink& sink) {
-  if (program.box) return ProgramBox{*program.box};
+  if (program.box) return ProgramBox{corner_and_size(*program.box)};
   const Box3 own = field.bounds();
   // A box without thickness holds no inside either: zero is outside.
   if (!(own.min.x < own.max.x && own.min.y < own.max.y && own.min.z < own.max.z))
@@ -134,7 +242,7 @@ std::optional<ProgramBox> box_of(const Program& program, const Field& field, Dia
     if (std::isinf(box.max[i])) box.max[i] = 1;
     inverted = inverted || !(box.min[i] < box.max[i]);
   }
-  if (!inverted) return ProgramBox{box};
+  if (!inverted) return ProgramBox{corner_and_size(box)};
   std::string text;
   for (const Vec3 corner : {own.min, own.max})
     for (std::size_t i = 0; i < 3; ++i) text += (text.empty() ? "" : ",") + format_number(corner[i]);

@@ -1,16 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <filesystem>
+#include <set>
 
 #include "arguments.hpp"
 #include "meso/expr/nearest.hpp"
 #include "meso/implicit/surfaces.hpp"
 #include "meso/sdf/program.hpp"
+#include "strut_cells.hpp"
 
 namespace meso::sdf {
 namespace {
 
-constexpr std::string_view surface_prefix = "tpms.";
+constexpr std::string_view surface_prefix = "tpms.", strut_prefix = "strut.";
 
 /// What other programs call our words.
 struct Synonym {
@@ -54,7 +56,23 @@ constexpr Synonym synonyms[] = {{"sphere", "ball"},
                                 {"minus", "difference"},
                                 {"cut", "difference"},
                                 {"primitive", "tpms.p"},
-                                {"schwarz", "tpms.p"}};
+                                {"schwarz", "tpms.p"},
+                                {"mix", "blend"},
+                                {"lerp", "blend"},
+                                {"fillet", "smooth-union"},
+                                {"smooth", "smooth-union"},
+                                {"fraction", "density"},
+                                {"tile", "repeat"},
+                                {"array", "repeat"},
+                                {"polar", "cylindrical"},
+                                {"duplicate", "dup"},
+                                {"copy", "dup"},
+                                {"exchange", "swap"},
+                                {"pop", "drop"},
+                                {"discard", "drop"},
+                                {"define", "def"},
+                                {"name", "def"},
+                                {"use", "recall"}};
 
 std::string solids(std::size_t n) { return std::to_string(n) + (n == 1 ? " solid" : " solids"); }
 
@@ -119,6 +137,7 @@ class ProgramParser {
     if (word.text.starts_with('@') && word.text.size() > 1) return include(word);
     if (const Vocable* vocable = find_vocable(word.text)) return instruction(*vocable, word);
     if (word.text.starts_with(surface_prefix)) return surface(word);
+    if (word.text.starts_with(strut_prefix)) return strut(word);
     if (word.text.starts_with('-') && word.text.size() > 1) return option(word);
     return unknown(word);
   }
@@ -129,7 +148,7 @@ class ProgramParser {
     if (!arguments(vocable, word, made)) return false;
     if (const std::string fault = fault_of(made); !fault.empty())
       return fail(word, Code::sdf_value, {word.text, fault});
-    depth_ = depth_ - vocable.takes + 1;
+    depth_ = depth_ - vocable.takes + vocable.puts;
     program_.instructions.push_back(std::move(made));
     return true;
   }
@@ -140,6 +159,8 @@ class ProgramParser {
         return true;
       case Follows::numbers:
         return numbers(word, vocable.count, vocable.argument, made.numbers);
+      case Follows::graded:
+        return numbers_or_formulas(word, vocable, made);
       case Follows::one_or_three: {
         const auto given = number_list(word, {1, 3}, vocable.argument);
         if (!given) return false;
@@ -166,14 +187,61 @@ class ProgramParser {
         made.text = text->text;
         return true;
       }
+      case Follows::name:
+        return name(word, made);
     }
     return false;
+  }
+
+  /// Of x, y and z where a list of constants cannot be read as one.
+  bool numbers_or_formulas(const Word& word, const Vocable& vocable, Instruction& made) {
+    const Word* given = argument(word, vocable.argument);
+    if (given == nullptr) return false;
+    const Word text = *given;
+    const auto read = read_numbers(text.text, {vocable.count});
+    if (!read.fault) {
+      std::copy(read.numbers.begin(), read.numbers.end(), made.numbers.begin());
+      return true;
+    }
+    const auto fault = formulas_fault(text.text, vocable.count);
+    if (!fault) return made.text = text.text, true;
+    return fail(text, Code::sdf_argument, {text.text, std::string(vocable.argument), fault->why}, *fault);
+  }
+
+  bool name(const Word& word, Instruction& made) {
+    const Word* given = argument(word, "a name");
+    if (given == nullptr) return false;
+    const Word text = *given;
+    if (text.text.empty()) return fail(text, Code::sdf_argument, {"", "a name", "it is empty"});
+    if (made.verb == Verb::def) named_.insert(text.text);
+    if (!named_.contains(text.text)) {
+      std::vector<std::string_view> known(named_.begin(), named_.end());
+      const std::string near(expr::nearest(text.text, known));
+      return fail(
+          text, Code::sdf_value,
+          {word.text, "no solid is named '" + text.text + "'" +
+                          (near.empty() ? "; def NAME gives the last one a name" : "; did you mean '" + near + "'?")});
+    }
+    made.text = text.text;
+    return true;
   }
 
   bool surface(const Word& word) {
     const std::string_view name = std::string_view(word.text).substr(surface_prefix.size());
     if (!implicit::find_surface(name)) return unknown(word);
     program_.instructions.push_back({.verb = Verb::surface, .text = std::string(name), .word = word, .depth = depth_});
+    ++depth_;
+    return true;
+  }
+
+  bool strut(const Word& word) {
+    const std::string_view name = std::string_view(word.text).substr(strut_prefix.size());
+    if (!is_strut_cell(name)) return unknown(word);
+    Instruction made{.verb = Verb::strut, .text = std::string(name), .word = word, .depth = depth_};
+    if (!numbers(word, 1, "the radius of its struts, in edges of the cell", made.numbers)) return false;
+    if (const std::string fault = fault_of(made); !fault.empty())
+      return fail(word, Code::sdf_value, {word.text, fault});
+    program_.instructions.push_back(std::move(made));
     ++depth_;
     return true;
   }
@@ -276,6 +344,8 @@ class ProgramParser {
     std::vector<std::string_view> known{"-b", "-s", "-o", "--help", "--version"};
     for (const Vocable& v : vocabulary()) known.push_back(v.word);
     for (const CallerFlag& flag : options_.caller_flags) known.push_back(flag.name);
+    const std::vector<std::string> struts = strut_words();
+    known.insert(known.end(), struts.begin(), struts.end());
     std::string near(expr::nearest(word, known));
     if (!near.empty()) return near;
     // Also a surface whose prefix is wrong or missing.
@@ -321,6 +391,7 @@ class ProgramParser {
   Program program_;
   Word last_;  ///< read
   std::size_t depth_ = 0;
+  std::set<std::string, std::less<>> named_;  ///< by def
 };
 
 }  // namespace

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "meso/sdf/solid_tree.hpp"
+
 namespace meso::sdf {
 namespace {
 
@@ -19,7 +21,9 @@ std::optional<Wall> thinner(const std::optional<Wall>& a, const std::optional<Wa
 void change(Solid& solid, const Instruction& instruction) {
   const auto& n = instruction.numbers;
   const auto new_wall = [&](double thickness) {
-    solid.wall = solid.unit_slope && thickness > 0 ? std::optional(Wall{&instruction, thickness}) : std::nullopt;
+    const bool is_known = solid.unit_slope && instruction.text.empty() && thickness > 0;
+    solid.wall = is_known ? std::optional(Wall{&instruction, thickness}) : std::nullopt;
+    if (!instruction.text.empty()) solid.unit_slope = false;
   };
   switch (instruction.verb) {
     case Verb::shell:
@@ -28,7 +32,13 @@ void change(Solid& solid, const Instruction& instruction) {
       return new_wall(n[1] - n[0]);
     case Verb::complement:  // what was a wall is a gap
       return solid.wall.reset();
+    case Verb::density:
+    case Verb::cylindrical:
+    case Verb::spherical:
+      solid = {.unit_slope = false};
+      return;
     case Verb::offset:
+      if (!instruction.text.empty()) solid = {.unit_slope = false};
       if (!solid.wall) return;
       solid.wall->thickness += 2 * n[0];
       if (!solid.unit_slope || solid.wall->thickness <= 0) solid.wall.reset();
@@ -44,41 +54,34 @@ void change(Solid& solid, const Instruction& instruction) {
   }
 }
 
+void join(Solid& below, const Solid& above, Verb verb) {
+  below.unit_slope = below.unit_slope && above.unit_slope;
+  if (verb == Verb::blend) below = {.unit_slope = false};
+  if (verb == Verb::union_of || verb == Verb::intersection || verb == Verb::smooth_union)
+    below.wall = thinner(below.wall, above.wall);
+}
+
 }  // namespace
 
 std::optional<Wall> thinnest_wall(const Program& program) {
-  std::vector<Solid> stack;
-  for (const Instruction& instruction : program.instructions) {
-    switch (instruction.verb) {
-      case Verb::surface:
-      case Verb::expression:
-        stack.push_back({.unit_slope = false});
-        break;
-      case Verb::ball:
-      case Verb::cylinder:
-      case Verb::box:
-      case Verb::cone:
-      case Verb::torus:
-      case Verb::capsule:
-      case Verb::half_space:
-      case Verb::file:
-        stack.push_back({});
-        break;
-      case Verb::union_of:
-      case Verb::intersection:
-      case Verb::difference: {
-        const Solid above = stack.back();
-        stack.pop_back();
-        Solid& below = stack.back();
-        below.unit_slope = below.unit_slope && above.unit_slope;
-        if (instruction.verb != Verb::difference) below.wall = thinner(below.wall, above.wall);
-        break;
-      }
-      default:
-        change(stack.back(), instruction);
+  const SolidTree tree = solid_tree(program);
+  std::vector<Solid> solids;
+  for (const SolidTree::Node& node : tree.nodes) {
+    const Verb verb = node.made_by->verb;
+    if (node.of.empty()) {
+      const bool is_level_set = verb == Verb::surface || verb == Verb::expression;
+      solids.push_back({.unit_slope = !is_level_set});
+      if (verb == Verb::strut) solids.back().wall = Wall{node.made_by, 2 * node.made_by->numbers[0]};
+      continue;
     }
+    Solid made = solids[node.of[0]];
+    if (node.of.size() == 2)
+      join(made, solids[node.of[1]], verb);
+    else
+      change(made, *node.made_by);
+    solids.push_back(made);
   }
-  return stack.back().wall;
+  return solids.back().wall;
 }
 
 }  // namespace meso::sdf

@@ -93,6 +93,7 @@ std::optional<std::vector<Word>> words_of_text(std::string text, std::string nam
 }
 
 void point_at(Diagnostic& diagnostic, const Word& word, std::size_t offset, std::size_t length) {
+  if (!word.source) return;  // not read, but made
   std::size_t begin = word.offset, count = word.length;
   const std::string_view text = word.source->text;
   const bool whole_in_quotes = word.length == word.text.size() + 2 && (text[begin] == '\'' || text[begin] == '"');

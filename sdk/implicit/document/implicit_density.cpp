@@ -166,7 +166,7 @@ std::optional<Term> ImplicitCells::level_for(const Parts& made, const Values& va
       const auto one = parts(fixed, box, own);
       return one ? one->function : Term::constant(NAN);
     };
-    table = std::make_shared<const DensityTable>(function, box, ranges);
+    table = std::make_shared<const DensityTable>(function, DensityTable::Room{box.corner, box.size}, ranges);
   }
   if (!check_shares(*made.share, *table, at, points)) return std::nullopt;
   if (made.share->is_constant() && at.empty()) return Term::constant(table->level(made.share->node().number, {}));

@@ -2,10 +2,9 @@
 #include "point_terms.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
-#include "point_function.hpp"
+#include "meso/implicit/point_function.hpp"
 
 namespace meso::implicit {
 namespace {
@@ -31,39 +30,6 @@ class Quantity final : public PointFunction {
  private:
   eval::PointQuantity quantity_;
   Box3 region_;
-};
-
-class DensityLevel final : public PointFunction {
- public:
-  DensityLevel(std::shared_ptr<const DensityTable> table, const Term& share, const std::vector<Term>& at)
-      : table_(std::move(table)), share_(share) {
-    for (const Term& term : at) at_.emplace_back(term);
-  }
-
-  void values(std::span<const Vec3> points, double* out) const override {
-    std::vector<double> share(points.size());
-    share_.values(points, share);
-    std::array<std::vector<double>, 2> at;
-    for (std::size_t a = 0; a < at_.size(); ++a) {
-      at[a].resize(points.size());
-      at_[a].values(points, at[a]);
-    }
-    std::array<double, 2> here{};
-    for (std::size_t n = 0; n < points.size(); ++n) {
-      for (std::size_t a = 0; a < at_.size(); ++a) here[a] = at[a][n];
-      out[n] = std::isnan(share[n] + here[0] + here[1]) ? NAN : table_->level(share[n], {here.data(), at_.size()});
-    }
-  }
-  [[nodiscard]] Interval interval(const Box3& box) const override {
-    std::array<Interval, 2> at;
-    for (std::size_t a = 0; a < at_.size(); ++a) at[a] = at_[a].interval(box);
-    return table_->level(share_.interval(box), {at.data(), at_.size()});
-  }
-
- private:
-  std::shared_ptr<const DensityTable> table_;
-  FlatTerm share_;
-  std::vector<FlatTerm> at_;
 };
 
 class LevelDistance final : public PointFunction {
@@ -129,10 +95,6 @@ class Phase final : public PointFunction {
 
 Term quantity_term(eval::PointQuantity quantity, const Box3& region) {
   return Term::external(std::make_shared<const Quantity>(std::move(quantity), region));
-}
-
-Term density_level(std::shared_ptr<const DensityTable> table, const Term& share, std::vector<Term> at) {
-  return Term::external(std::make_shared<const DensityLevel>(std::move(table), share, at));
 }
 
 Term distance_to_level(const Term& f, double step, double reach) {

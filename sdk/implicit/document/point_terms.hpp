@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Functions of the point that no expression can say, as terms: a quantity of a vector field, the level that fills a
-// share, the distance to a level, the phase of cells that grow along an axis. Private.
+// Functions of the point that no expression can say, as terms: a quantity of a vector field,
+// the distance to a level, the phase of cells that grow along an axis. Private.
 
 #include <memory>
 #include <vector>
 
-#include "density_table.hpp"
 #include "meso/eval/evaluation.hpp"
+#include "meso/implicit/density_table.hpp"
 #include "meso/implicit/field.hpp"
 
 namespace meso::implicit {
@@ -15,9 +15,6 @@ namespace meso::implicit {
 /// The quantity at the world's point. Where it has no value (outside of its records) it is that of the nearest point of
 /// `region`; what the document calls an error there was looked for before.
 [[nodiscard]] Term quantity_term(eval::PointQuantity quantity, const Box3& region);
-
-/// table.level(share, at).
-[[nodiscard]] Term density_level(std::shared_ptr<const DensityTable> table, const Term& share, std::vector<Term> at);
 
 /// Signed distance to {f = 0}, negative where f is: the nearest point is found by Newton's steps along the gradient and
 /// slides along the surface until the way to it is perpendicular. Good within the radius of the surface's curvature,

@@ -25,4 +25,11 @@ std::array<std::int32_t, 3> nodes_for_total(const Box3& box, double total) {
   return nodes;
 }
 
+double float_step(const Box3& box) {
+  double reach = 0;
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    reach = std::max({reach, std::abs(box.min[axis]), std::abs(box.max[axis])});
+  return std::nextafter(static_cast<float>(reach), HUGE_VALF) - static_cast<float>(reach);
+}
+
 }  // namespace meso::implicit

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "meso/implicit/term.hpp"
 
+#include <algorithm>
 #include <cassert>
 #include <iterator>
 
@@ -28,6 +29,27 @@ std::array<Term, 3> rows_of(const Affine& source_from_target) {
     rows[row] = sum;
   }
   return rows;
+}
+
+/// The same operations on other coordinates; shared nodes stay shared.
+template <class External>
+Term rebuilt(const Term& term, const std::array<Term, 3>& coordinates, const External& external) {
+  const FlatTerm flat(term);
+  std::vector<Term> made;
+  made.reserve(flat.steps().size());
+  for (const FlatTerm::Step& step : flat.steps()) {
+    const TermNode& n = *step.node;
+    if (n.op == Op::number) {
+      made.push_back(Term::constant(n.number));
+    } else if (n.op == Op::name) {
+      made.push_back(n.axis == TermNode::external_axis ? external(n) : coordinates[n.axis]);
+    } else {
+      std::vector<Term> operands;
+      for (const std::uint32_t index : flat.operands(step)) operands.push_back(made[index]);
+      made.push_back(Term::apply(n.op, std::move(operands)));
+    }
+  }
+  return made.back();
 }
 
 }  // namespace
@@ -96,25 +118,21 @@ Term Term::from_expression(const expr::Expression& expression, std::span<const T
 }
 
 Term Term::at(const Affine& source_from_target) const {
-  const std::array<Term, 3> rows = rows_of(source_from_target);
+  return rebuilt(*this, rows_of(source_from_target), [&](const TermNode& leaf) {
+    return external(leaf.external, leaf.field_from_world * source_from_target);
+  });
+}
+
+Term Term::with(const std::array<Term, 3>& xyz) const {
+  assert(!has_external());
+  return rebuilt(*this, xyz, [](const TermNode&) { return Term(); });
+}
+
+bool Term::has_external() const {
   const FlatTerm flat(*this);
-  std::vector<Term> rebuilt;
-  rebuilt.reserve(flat.steps().size());
-  for (const FlatTerm::Step& step : flat.steps()) {
-    const TermNode& n = *step.node;
-    if (n.op == Op::number) {
-      rebuilt.push_back(constant(n.number));
-    } else if (n.op == Op::name) {
-      rebuilt.push_back(n.axis == TermNode::external_axis
-                            ? external(n.external, n.field_from_world * source_from_target)
-                            : rows[n.axis]);
-    } else {
-      std::vector<Term> operands;
-      for (const std::uint32_t index : flat.operands(step)) operands.push_back(rebuilt[index]);
-      rebuilt.push_back(apply(n.op, std::move(operands)));
-    }
-  }
-  return rebuilt.back();
+  return std::ranges::any_of(flat.steps(), [](const FlatTerm::Step& step) {
+    return step.node->op == Op::name && step.node->axis == TermNode::external_axis;
+  });
 }
 
 double Term::value(Vec3 p) const { return FlatTerm(*this).value(p); }

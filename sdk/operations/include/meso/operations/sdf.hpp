@@ -61,6 +61,9 @@ struct SdfReport {
 [[nodiscard]] std::optional<SdfReport> run_sdf(const sdf::Program& program, const SdfOptions& options,
                                                DiagnosticSink& sink);
 
+/// What is contoured.
+[[nodiscard]] std::optional<Box3> sdf_box(const sdf::Program& program, const RunOptions& run, DiagnosticSink& sink);
+
 /// What programs include is read so.
 [[nodiscard]] sdf::ProgramOptions::Text read_text(const std::string& path);
 

@@ -28,6 +28,7 @@ struct ProgramBox {
   Box3 box;
   bool certainly_empty = false;
 };
+[[nodiscard]] Box3 corner_and_size(const Box3& box);  ///< max = min + size
 [[nodiscard]] std::optional<ProgramBox> box_of(const Program& program, const implicit::Field& field,
                                                DiagnosticSink& sink);
 

@@ -7,9 +7,10 @@
 //   const auto program = sdf::parse_program(sdf::words_of_arguments(arguments), {}, sink);
 //   // program->output == "g.stl", program->samples[0] == 216000, program->instructions has two entries
 //
-// Numbers are constant expressions (docs/specification/expressions.md, with `tau`); lengths in millimetres, angles in
-// radians. Every fault is one SDF_* diagnostic that names the word, draws a caret, and tells how many solids the stack
-// holds there; reading stops at the first. Thread rule: programs are values.
+// Numbers are constant expressions (docs/specification/expressions.md, with `tau`), those of offset, shell,
+// eccentric-shell and density also expressions of x, y, z; lengths in millimetres, angles in radians. Every fault is
+// one SDF_* diagnostic that names the word, draws a caret, and tells how many solids the stack holds there; reading
+// stops at the first. Thread rule: programs are values.
 
 #include <array>
 #include <functional>
@@ -24,11 +25,13 @@
 
 namespace meso::sdf {
 
-/// One word that leaves a solid on the stack, its arguments, and where it stands.
+/// One word that changes the stack, its arguments, and where it stands.
 struct Instruction {
   Verb verb{};
   std::array<double, 7> numbers{};  ///< as many as the word takes; of `scale k`, three times k
-  std::string text{};               ///< of `expression`, `file`, and the surface of `tpms.`
+  /// Of `expression`, `blend`, `file`, `def`, `recall`; the surface of `tpms.`, the cell of `strut.`; of a word whose
+  /// numbers differ from point to point, these, separated by commas.
+  std::string text{};
   Word word{};
   std::size_t depth = 0;  ///< solids on the stack before it
 };

@@ -39,6 +39,7 @@ struct Word {
 
 /// Points at `length` bytes from byte `offset` of a word (all of it: 0, npos): file, line, column, and as a related
 /// note the line with a caret below. Where the word was quoted the caret covers all of it.
+/// Nothing where the word has no source.
 void point_at(Diagnostic& diagnostic, const Word& word, std::size_t offset = 0,
               std::size_t length = std::string_view::npos);
 

@@ -35,4 +35,7 @@ struct Grid {
 /// size.
 [[nodiscard]] std::array<std::int32_t, 3> nodes_for_total(const Box3& box, double total);
 
+/// The step of a box's largest coordinate, as a float.
+[[nodiscard]] double float_step(const Box3& box);
+
 }  // namespace meso::implicit

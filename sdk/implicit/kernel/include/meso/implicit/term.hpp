@@ -53,6 +53,9 @@ class Term {
 
   /// p -> this(source_from_target p). Shared nodes stay shared; affine maps fold into external leaves.
   [[nodiscard]] Term at(const Affine& source_from_target) const;
+  /// p -> this(x(p), y(p), z(p)). REQUIRES: no external leaves.
+  [[nodiscard]] Term with(const std::array<Term, 3>& xyz) const;
+  [[nodiscard]] bool has_external() const;
 
   /// The plain walk at one point: slow, the yardstick of every kernel.
   [[nodiscard]] double value(Vec3 p) const;

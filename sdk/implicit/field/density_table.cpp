@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "density_table.hpp"
+#include "meso/implicit/density_table.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cmath>
 
 #include "meso/implicit/flat_term.hpp"
+#include "meso/implicit/point_function.hpp"
 
 namespace meso::implicit {
 namespace {
@@ -20,7 +22,8 @@ double at_quantile(const std::vector<double>& levels, double share) {
   return levels[i] + part * (levels[i + 1] - levels[i]);
 }
 
-std::vector<double> sorted_values(const Term& function, const eval::BoxShape& box, std::span<const Vec3> unit_points) {
+std::vector<double> sorted_values(const Term& function, const DensityTable::Room& box,
+                                  std::span<const Vec3> unit_points) {
   std::vector<Vec3> points;
   points.reserve(unit_points.size());
   for (const Vec3& u : unit_points)
@@ -47,7 +50,44 @@ std::vector<DensityTable::Gap> gaps_of(const std::vector<double>& sorted) {
   return gaps;
 }
 
+class DensityLevel final : public PointFunction {
+ public:
+  DensityLevel(std::shared_ptr<const DensityTable> table, const Term& share, const std::vector<Term>& at)
+      : table_(std::move(table)), share_(share) {
+    for (const Term& term : at) at_.emplace_back(term);
+  }
+
+  void values(std::span<const Vec3> points, double* out) const override {
+    std::vector<double> share(points.size());
+    share_.values(points, share);
+    std::array<std::vector<double>, 2> at;
+    for (std::size_t a = 0; a < at_.size(); ++a) {
+      at[a].resize(points.size());
+      at_[a].values(points, at[a]);
+    }
+    std::array<double, 2> here{};
+    for (std::size_t n = 0; n < points.size(); ++n) {
+      for (std::size_t a = 0; a < at_.size(); ++a) here[a] = at[a][n];
+      out[n] = std::isnan(share[n] + here[0] + here[1]) ? NAN : table_->level(share[n], {here.data(), at_.size()});
+    }
+  }
+  [[nodiscard]] Interval interval(const Box3& box) const override {
+    std::array<Interval, 2> at;
+    for (std::size_t a = 0; a < at_.size(); ++a) at[a] = at_[a].interval(box);
+    return table_->level(share_.interval(box), {at.data(), at_.size()});
+  }
+
+ private:
+  std::shared_ptr<const DensityTable> table_;
+  FlatTerm share_;
+  std::vector<FlatTerm> at_;
+};
+
 }  // namespace
+
+Term density_level(std::shared_ptr<const DensityTable> table, const Term& share, std::vector<Term> at) {
+  return Term::external(std::make_shared<const DensityLevel>(std::move(table), share, at));
+}
 
 // The additive sequence of the plastic number's generalisation to three dimensions (Roberts 2018).
 std::vector<Vec3> even_points(std::size_t count) {
@@ -62,7 +102,7 @@ std::vector<Vec3> even_points(std::size_t count) {
   return points;
 }
 
-DensityTable::DensityTable(const Function& function, const eval::BoxShape& box, std::vector<Interval> ranges)
+DensityTable::DensityTable(const Function& function, const Room& room, std::vector<Interval> ranges)
     : ranges_(std::move(ranges)),
       nodes_(ranges_.empty()       ? 1
              : ranges_.size() == 1 ? 33
@@ -78,7 +118,7 @@ DensityTable::DensityTable(const Function& function, const eval::BoxShape& box, 
     for (std::size_t i = 0; i < nodes_along(0); ++i) {
       if (!ranges_.empty()) at[0] = value(0, i);
       if (ranges_.size() > 1) at[1] = value(1, j);
-      const std::vector<double> sorted = sorted_values(function(at), box, points);
+      const std::vector<double> sorted = sorted_values(function(at), room, points);
       Node made{std::vector<double>(quantiles + 1), gaps_of(sorted)};
       for (std::size_t q = 0; q <= quantiles; ++q)
         made.quantiles[q] = at_quantile(sorted, static_cast<double>(q) / static_cast<double>(quantiles));

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 // A leaf of a term whose values are computed point by point: tables, fields of the document, distances to a level.
-// Private.
 
 #include <memory>
 #include <span>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "point_function.hpp"
+#include "meso/implicit/point_function.hpp"
 
 namespace meso::implicit {
 namespace {

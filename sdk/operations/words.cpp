@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "meso/operations/words.hpp"
+
+#include <filesystem>
+
+#include "meso/operations/sdf.hpp"
+#include "meso/package/open_document.hpp"
+#include "meso/sdf_document/words_and_documents.hpp"
+#include "meso/xml/write.hpp"
+
+namespace meso::operations {
+
+bool write_words(const sdf::Program& program, ExistingFile existing, const RunOptions& run, DiagnosticSink& sink) {
+  const auto box = sdf_box(program, run, sink);
+  if (!box) return false;
+  const auto folder = std::filesystem::path(program.output).parent_path();
+  const auto document = sdf::document_of(program, *box, folder, sink);
+  if (!document) return false;
+  auto file = OutputFile::create(program.output, existing, sink);
+  if (!file) return false;
+  return file->write(meso::write_document(*document)) && file->commit(sink);
+}
+
+std::optional<std::string> print_words(const std::string& document, const RunOptions& run, DiagnosticSink& sink) {
+  const auto checked = open_checked_document(document, run, sink);
+  const auto evaluation = checked ? eval::Evaluation::make(*checked, {.run = run}, sink) : std::nullopt;
+  if (!evaluation) return std::nullopt;
+  sdf::WhyNot why;
+  if (const auto program = sdf::program_of(*evaluation, "", why)) return sdf::command_line(*program);
+  sink.report({.code = Code::sdf_not_words, .args = {why.element, why.why}});
+  return std::nullopt;
+}
+
+}  // namespace meso::operations

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "leaf_formulas.hpp"
+
+namespace meso::sdf {
+namespace {
+
+constexpr std::string_view scaled_begin = "scale*(";
+
+}  // namespace
+
+std::span<const LeafFormula> leaf_formulas() {
+  static const std::vector<LeafFormula> all{
+      {Verb::ball, "sqrt(x^2 + y^2 + z^2) - 1"},
+      {Verb::cylinder, "sqrt(x^2 + y^2) - 1"},
+      {Verb::box,
+       "sqrt(max(abs(x) - 1, 0)^2 + max(abs(y) - 1, 0)^2 + max(abs(z) - 1, 0)^2) + "
+       "min(max(max(abs(x) - 1, abs(y) - 1), abs(z) - 1), 0)"},
+      {Verb::torus, "sqrt((sqrt(x^2 + y^2) - ring)^2 + z^2) - tube", {"ring", "tube"}},
+      {Verb::capsule,
+       "sqrt((x - fromX - wayX*clamp(((x - fromX)*wayX + (y - fromY)*wayY + (z - fromZ)*wayZ)/wayWay, 0, 1))^2 + "
+       "(y - fromY - wayY*clamp(((x - fromX)*wayX + (y - fromY)*wayY + (z - fromZ)*wayZ)/wayWay, 0, 1))^2 + "
+       "(z - fromZ - wayZ*clamp(((x - fromX)*wayX + (y - fromY)*wayY + (z - fromZ)*wayZ)/wayWay, 0, 1))^2) - radius",
+       {"fromX", "fromY", "fromZ", "toX", "toY", "toZ", "radius"}},
+      {Verb::half_space,
+       "(normalX*x + normalY*y + normalZ*z)/sqrt(normalX^2 + normalY^2 + normalZ^2) - reach",
+       {"normalX", "normalY", "normalZ", "reach"}},
+  };
+  return all;
+}
+
+std::string scaled_field(std::string_view field) {
+  return std::string(scaled_begin) +
+         renamed(field,
+                 [](const std::string& name) {
+                   const bool is_axis = name == "x" || name == "y" || name == "z";
+                   return is_axis ? std::optional("(" + name + "/scale)") : std::nullopt;
+                 }) +
+         ")";
+}
+
+std::optional<std::string> unscaled_field(std::string_view field) {
+  if (!field.starts_with(scaled_begin) || !field.ends_with(')')) return std::nullopt;
+  std::string text(field.substr(scaled_begin.size(), field.size() - scaled_begin.size() - 1));
+  for (const char axis : {'x', 'y', 'z'}) {
+    const std::string here = std::string("(") + axis + "/scale)";
+    for (std::size_t at = text.find(here); at != std::string::npos; at = text.find(here, at + 1))
+      text.replace(at, here.size(), 1, axis);
+  }
+  return scaled_field(text) == field ? std::optional(text) : std::nullopt;
+}
+
+// I - 2 n n' / (n . n)
+std::string mirror_matrix(const std::string& prefix) {
+  const std::string square = prefix + "X^2 + " + prefix + "Y^2 + " + prefix + "Z^2";
+  std::string text;
+  for (const char row : {'X', 'Y', 'Z'}) {
+    for (const char column : {'X', 'Y', 'Z'})
+      text += std::string(row == column ? "1" : "0") + " - 2*" + prefix + row + "*" + prefix + column + "/(" + square +
+              "), ";
+    text += row == 'Z' ? "0" : "0, ";
+  }
+  return text;
+}
+
+std::string scale_matrix(const std::string& prefix) {
+  return prefix + "X, 0, 0, 0, 0, " + prefix + "Y, 0, 0, 0, 0, " + prefix + "Z, 0";
+}
+
+std::string prefix_of_matrix(std::string_view matrix, std::string (*make)(const std::string&)) {
+  const std::string pattern = make("?");
+  const std::size_t at = pattern.find('?');
+  if (matrix.substr(0, at) != pattern.substr(0, at)) return {};
+  const std::size_t end = matrix.find('X', at);
+  if (end == std::string_view::npos) return {};
+  std::string prefix(matrix.substr(at, end - at));
+  return make(prefix) == matrix ? prefix : std::string();
+}
+
+}  // namespace meso::sdf
