@@ -182,7 +182,8 @@ class Builder {
       default:
         break;
     }
-    const Term a = below.term(), weight = term_of(instruction.text);
+    const Term a = below.term();
+    const Term weight = Term::apply(Op::clamp, {term_of(instruction.text), Term::constant(0), Term::constant(1)});
     return Field::from_term(a + weight * (above.term() - a));
   }
 

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "leaf_formulas.hpp"
 
+#include "meso/expr/expression.hpp"
+
 namespace meso::sdf {
 namespace {
 
 constexpr std::string_view scaled_begin = "scale*(";
+constexpr std::string_view clamped_begin = "clamp(", clamped_end = ", 0, 1)";
 
 }  // namespace
 
@@ -47,6 +50,18 @@ std::optional<std::string> unscaled_field(std::string_view field) {
       text.replace(at, here.size(), 1, axis);
   }
   return scaled_field(text) == field ? std::optional(text) : std::nullopt;
+}
+
+std::string clamped(std::string_view weight) {
+  return std::string(clamped_begin) + std::string(weight) + std::string(clamped_end);
+}
+
+std::string unclamped(std::string_view weight) {
+  const std::size_t around = clamped_begin.size() + clamped_end.size();
+  if (!weight.starts_with(clamped_begin) || !weight.ends_with(clamped_end)) return std::string(weight);
+  const std::string inner(weight.substr(clamped_begin.size(), weight.size() - around));
+  // clamp(a, 0, 1) + clamp(b, 0, 1) begins and ends so, too.
+  return expr::parse_expression(inner, LengthUnit::millimeter).expression ? inner : std::string(weight);
 }
 
 // I - 2 n n' / (n . n)

@@ -46,6 +46,10 @@ template <class Meaning>
 [[nodiscard]] std::string scaled_field(std::string_view field);
 [[nodiscard]] std::optional<std::string> unscaled_field(std::string_view field);
 
+/// Weights of blends count at most 1 and at least 0 in words; documents demand it.
+[[nodiscard]] std::string clamped(std::string_view weight);
+[[nodiscard]] std::string unclamped(std::string_view weight);
+
 /// The matrix of a mirror or of a scale with negative factors, of parameters whose names begin so, and back.
 [[nodiscard]] std::string mirror_matrix(const std::string& prefix);
 [[nodiscard]] std::string scale_matrix(const std::string& prefix);

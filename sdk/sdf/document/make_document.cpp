@@ -41,9 +41,11 @@ Box3 with_room(const Box3& region) {
   Box3 box;
   for (std::size_t a = 0; a < 3; ++a) {
     const double size = region.max[a] - region.min[a];
-    const double step = std::pow(10, std::floor(std::log10(size)) - 1);
-    box.min[a] = step * (std::floor(region.min[a] / step) - 1);
-    box.max[a] = step * (std::ceil(region.max[a] / step) + 1);
+    const double digits = std::floor(std::log10(size)) - 1, step = std::pow(10, std::abs(digits));
+    const auto rounded = [&](double steps) { return digits < 0 ? steps / step : steps * step; };
+    const auto in_steps = [&](double v) { return digits < 0 ? v * step : v / step; };
+    box.min[a] = rounded(std::floor(in_steps(region.min[a])) - 1);
+    box.max[a] = rounded(std::ceil(in_steps(region.max[a])) + 1);
   }
   return box;
 }
@@ -192,7 +194,10 @@ std::optional<Document> DocumentMaker::make(const Program& program, const Box3& 
   MeshSettings mesh;
   const auto text = [](double v) { return Expression{format_number(v)}; };
   std::string samples;
-  for (const double n : program.samples) samples += (samples.empty() ? "" : ", ") + format_number(n);
+  for (const double n : program.samples) {
+    const bool is_whole = n == std::round(n) && n < 1e15;
+    samples += (samples.empty() ? "" : ", ") + (is_whole ? std::to_string(std::llround(n)) : format_number(n));
+  }
   mesh.samples = ExpressionList{samples};
   mesh.x = text(box.min.x), mesh.y = text(box.min.y), mesh.z = text(box.min.z);
   mesh.dx = text(box.max.x - box.min.x), mesh.dy = text(box.max.y - box.min.y), mesh.dz = text(box.max.z - box.min.z);
@@ -312,7 +317,7 @@ std::optional<CsgNode> DocumentMaker::csg(Index node) {
     default:
       break;
   }
-  if (n[0] == n[1] && n[1] == n[2]) return operands(CsgScale{.factor = number(id, n[0])});
+  if (n[0] == n[1] && n[1] == n[2]) return operands(CsgScale{.factor = number(id + "Factor", n[0])});
   return operands(CsgScale{.x = number(id + "X", n[0]), .y = number(id + "Y", n[1]), .z = number(id + "Z", n[2])});
 }
 
@@ -427,7 +432,7 @@ std::optional<Operand> DocumentMaker::moved(Index node, const Box3& region) {
   else if (at.verb == Verb::orient)
     pattern.instructions.push_back(OrientInstruction{.x = x(), .y = y(), .z = z()});
   else if (n[0] == n[1] && n[1] == n[2])
-    pattern.instructions.push_back(ScaleInstruction{.factor = number(id, n[0])});
+    pattern.instructions.push_back(ScaleInstruction{.factor = number(id + "Factor", n[0])});
   else
     pattern.instructions.push_back(ScaleInstruction{.x = x(), .y = y(), .z = z()});
   return add_pattern(std::move(cell), std::move(pattern), id);
@@ -523,10 +528,10 @@ bool DocumentMaker::set_levels(const Chain& chain, UnitCell& cell, ImplicitBody&
     const auto items = expr::split_list(at.text);
     const std::string first = at.text.empty() ? "" : std::string(items[0].text);
     if (at.verb == Verb::offset && i == 0) {
-      body.isovalue = value(node, "", at.numbers[0], first, factor);
+      body.isovalue = value(node, "Level", at.numbers[0], first, factor);
     } else if (at.verb == Verb::shell && is_last) {
       body.kind = ImplicitKind::shell;
-      body.thickness = value(node, "", at.numbers[0], first, factor);
+      body.thickness = value(node, "Thickness", at.numbers[0], first, factor);
     } else if (at.verb == Verb::eccentric_shell && is_last && i == 0) {
       body.kind = ImplicitKind::eccentric_shell;
       body.lower = value(node, "Lower", at.numbers[0], first, factor);
@@ -534,7 +539,7 @@ bool DocumentMaker::set_levels(const Chain& chain, UnitCell& cell, ImplicitBody&
     } else if (at.verb == Verb::complement && is_last) {
       body.kind = ImplicitKind::exoskeleton;
     } else if (at.verb == Verb::density && is_last && i == 0 && is_periodic) {
-      body.density = value(node, "", at.numbers[0], first, "");
+      body.density = value(node, "Share", at.numbers[0], first, "");
     } else {
       fault(at, "a cell has one level and one kind; this comes on top of '" +
                     std::string(word_of(i == 0 ? word(chain.leaf).verb : chain.levels[i - 1]->verb)) + "'");
@@ -588,7 +593,7 @@ bool DocumentMaker::add_blends(Index node, UnitCell& cell, ImplicitBody& body) {
   const std::string weight = renamed(at.text, [](const std::string& used) {
     return used == "tau" ? std::optional<std::string>("(2*pi)") : std::nullopt;
   });
-  body.blends.push_back({.field = Expression{*field}, .weight = {weight}});
+  body.blends.push_back({.field = Expression{*field}, .weight = {clamped(weight)}});
   return true;
 }
 

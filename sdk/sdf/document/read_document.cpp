@@ -499,7 +499,7 @@ bool DocumentReader::formula(const UnitCell& cell, const ImplicitBody& body, con
   if (!leaf(cell, unscaled ? *unscaled : body.field->text)) return false;
   for (const ImplicitBlend& blend : body.blends) {
     if (!blend.field) return no("a blend of surfaces by name, which weighs them by their size");
-    const auto weight = in_words(cell, blend.weight.text, "");
+    const auto weight = in_words(cell, unclamped(blend.weight.text), "");
     if (!weight) return no("a weight with names that words do not know");
     if (!leaf(cell, blend.field->text)) return false;
     push(Verb::blend, {}, *weight);
