@@ -49,6 +49,8 @@ bool fits(const fs::path& out, const MakeOptions& options, const WriteOptions& w
              samples = options.spacing_mm || !options.samples.empty();
   if (!*needs_mesh && fine) return refuse("--deflection and --angle have an effect for meshes only");
   if (!*needs_mesh && samples) return refuse("--spacing and --samples have an effect for meshes only");
+  if (options.tolerance_mm && samples)
+    return refuse("--tolerance picks the samples; --spacing and --samples have no effect beside it");
   if (!*needs_mesh && options.engine == Engine::implicit)
     return refuse("--engine implicit makes triangles; '" + out.string() + "' is to hold exact faces");
   if (options.engine == Engine::brep && samples)

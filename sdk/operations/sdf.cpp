@@ -301,6 +301,10 @@ std::optional<Box3> sdf_box(const sdf::Program& program, const RunOptions& run, 
 
 std::optional<SdfReport> run_sdf(const sdf::Program& program, const SdfOptions& options, DiagnosticSink& sink) {
   const auto output = output_of(program.output, options, sink);
+  if (output && options.tolerance > 0 && program.has_samples) {
+    sink.report({.code = Code::usage, .args = {"--tolerance picks the samples; -s has no effect beside it"}});
+    return std::nullopt;
+  }
   return output ? Job(program, options, sink).run(*output) : std::nullopt;
 }
 

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <random>
@@ -132,6 +133,91 @@ TEST(BoxOf, ThatIsEmptyOrInverted) {
   const auto up = program_of("half-space 0,0,-1,-5");  // z >= 5: from 5 to 1
   EXPECT_FALSE(box_of(*up, field_of("half-space 0,0,-1,-5"), sink));
   EXPECT_EQ(sink.diagnostics()[0].code, Code::sdf_box);
+}
+
+double value_of(const std::string& line, Vec3 p) { return field_of(line).value(p); }
+
+TEST(BuildField, GradedLevelsAreThoseOfThePoint) {
+  for (const Vec3 p : {Vec3{0.3, -0.2, 0.7}, Vec3{-1, 0.4, 0.1}, Vec3{0.2, 0.9, -0.6}}) {
+    const double f = value_of("tpms.gyroid", p);
+    EXPECT_NEAR(value_of("tpms.gyroid offset '0.1*x + y'", p), f - (0.1 * p.x + p.y), 1e-12);
+    EXPECT_NEAR(value_of("tpms.gyroid shell '0.3 + z^2'", p), std::abs(f) - (0.3 + p.z * p.z) / 2, 1e-12);
+    EXPECT_NEAR(value_of("tpms.gyroid eccentric-shell 'x,0.4 + tau'", p),
+                std::max(p.x - f, f - (0.4 + 2 * std::numbers::pi)), 1e-12);
+    const double g = value_of("tpms.p", p), w = std::clamp((p.x + 1) / 2, 0.0, 1.0);
+    EXPECT_NEAR(value_of("tpms.gyroid tpms.p blend '(x + 1)/2'", p), f + w * (g - f), 1e-12);
+  }
+}
+
+/// The share of the unit cube inside, at points of a lattice that fits no period.
+double share(const Field& f) {
+  std::vector<Vec3> points;
+  for (int k = 0; k < 29; ++k)
+    for (int j = 0; j < 27; ++j)
+      for (int i = 0; i < 25; ++i) points.push_back({(i + 0.5) / 25, (j + 0.5) / 27, (k + 0.5) / 29});
+  std::vector<double> values(points.size());
+  f.values(points, values);
+  const auto inside = std::count_if(values.begin(), values.end(), [](double v) { return v < 0; });
+  return static_cast<double>(inside) / static_cast<double>(points.size());
+}
+
+TEST(BuildField, DensityFillsItsShareOfThePeriod) {
+  EXPECT_NEAR(share(field_of("tpms.gyroid density 0.3")), 0.3, 4e-3);
+  EXPECT_NEAR(share(field_of("tpms.iwp shell 0.1 density 0.2")), 0.2, 4e-3);
+  EXPECT_NEAR(share(field_of("tpms.p scale 1/3 density 0.4")), 0.4, 4e-3);
+  EXPECT_NEAR(share(field_of("strut.bcc 0.1 density 0.5")), 0.5, 4e-3);
+  // From 0.2 to 0.4 over the cube: 0.3 on the whole of it.
+  EXPECT_NEAR(share(field_of("tpms.gyroid scale 1/4 density '0.2 + 0.2*x'")), 0.3, 5e-3);
+}
+
+TEST(BuildField, StrutsAreDistancesToTheLibrarysStruts) {
+  // The centre of a body-centred cell is a node with a ball of 1.8 radii; its struts end at the corners.
+  EXPECT_NEAR(value_of("strut.bcc 0.05", {0.5, 0.5, 0.5}), -0.09, 1e-12);
+  EXPECT_NEAR(value_of("strut.bcc 0.05", {0.25, 0.25, 0.25}), -0.05, 1e-12);
+  EXPECT_NEAR(value_of("strut.bcc 0.05", {2.25, -0.75, 5.25}), -0.05, 1e-12);
+  EXPECT_NEAR(value_of("strut.sc 0.1 scale 4", {2, 0.3, 0}), 0.3 - 0.4, 1e-12);
+  // Beside a cell's side, that of struts on both sides.
+  EXPECT_NEAR(value_of("strut.sc 0.05", {0.5, -0.08, 0}), 0.03, 1e-12);
+}
+
+TEST(BuildField, BendsAndRepetitions) {
+  // Eight gyroids a turn: what is at angle 0 is there again an eighth of a turn further.
+  const double a = std::numbers::pi / 4;
+  const Field tube = field_of("tpms.gyroid cylindrical 8");
+  for (const double rho : {0.7, 1.9})
+    EXPECT_NEAR(tube.value({rho, 0, 0.3}), tube.value({rho * std::cos(a), rho * std::sin(a), 0.3}), 1e-9);
+  EXPECT_NEAR(tube.value({-1.3, 1e-12, 0.2}), tube.value({-1.3, -1e-12, 0.2}), 1e-9) << "the seam is closed";
+  EXPECT_NEAR(tube.value({1.25, 0, 0.4}), value_of("tpms.gyroid", {1.25, 0, 0.4}), 1e-12);
+  const Field globe = field_of("tpms.p spherical 6,3");
+  EXPECT_NEAR(globe.value({0, 0, 1.2}), value_of("tpms.p", {1.2, 0, 0}), 1e-12) << "the north pole";
+  EXPECT_NEAR(globe.value({0, 0, -1.2}), value_of("tpms.p", {1.2, 0, 3}), 1e-9) << "the south pole";
+  const Field balls = field_of("ball scale 0.3 repeat 1,2,0");
+  EXPECT_NEAR(balls.value({5.1, -4, 0.1}), std::hypot(0.1, 0.1) - 0.3, 1e-12);
+  EXPECT_GT(balls.value({0, 0, 1}), 0);
+}
+
+TEST(BuildField, StackWordsMoveSolids) {
+  expect_same("ball box move 1,0,0 swap difference", "box move 1,0,0 ball difference");
+  expect_same("ball dup move 1,0,0 union", "ball ball move 1,0,0 union");
+  expect_same("ball box scale 0.5 over drop difference", "ball box scale 0.5 difference");
+  expect_same("ball box move 1,0,0 over swap intersection union", "ball ball box move 1,0,0 intersection union");
+  expect_same("ball move 0,1,0 def a box recall a difference recall a scale 0.3 union",
+              "box ball move 0,1,0 difference ball move 0,1,0 scale 0.3 union");
+}
+
+TEST(BuildField, SmoothUnionRoundsWhereBothMeet) {
+  // Two planes at right angles, and a fillet of radius 1 between them.
+  const Field f = field_of("half-space 1,0,0,0 half-space 0,1,0,0 smooth-union 1");
+  EXPECT_NEAR(f.value({1 - std::sqrt(0.5), 1 - std::sqrt(0.5), 0}), 0, 1e-12);
+  EXPECT_NEAR(f.value({0, 5, 0}), 0, 1e-12);
+}
+
+TEST(BuildField, WhatHasNoPeriodHasNoDensity) {
+  DiagnosticSink sink;
+  const auto program = program_of("ball density 0.5");
+  EXPECT_FALSE(build_field(*program, {}, sink));
+  ASSERT_EQ(sink.diagnostics().size(), 1u);
+  EXPECT_EQ(sink.diagnostics()[0].code, Code::sdf_value);
 }
 
 }  // namespace

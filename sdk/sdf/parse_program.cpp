@@ -286,6 +286,7 @@ class ProgramParser {
         return fail(last_, Code::sdf_value, {word.text, "more than 2147483647 samples along an axis"});
     }
     program_.samples = std::move(*given);
+    program_.has_samples = true;
     return true;
   }
 

@@ -202,7 +202,7 @@ TEST(Language, EveryFaultHasItsCode) {
       {"ball move 1,2,3,4", Code::sdf_argument},
       {"ball move 1,,3", Code::sdf_argument},
       {"ball move (1,2),3,4", Code::sdf_argument},
-      {"ball offset x", Code::sdf_argument},
+      {"ball offset w", Code::sdf_argument},
       {"ball offset 1/0", Code::sdf_argument},
       {"ball offset 1e999", Code::sdf_argument},
       {"ball offset nan", Code::sdf_argument},

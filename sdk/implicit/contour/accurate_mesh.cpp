@@ -41,6 +41,7 @@ class Making {
  private:
   bool contour_on(const Grid& grid);
   bool to_tolerance(const Grid& first);
+  [[nodiscard]] bool is_affordable(const Grid& coarse);
   bool resolve(Grid grid);
   bool refine();
   bool simplify();
@@ -101,6 +102,38 @@ bool Making::fits(double triangles) {
   return false;
 }
 
+// Before the work begins: how far middles of edges of a coarse mesh are from the surface, at a few of them, tells how
+// many triangles a tolerance takes, to within some factor. Refused is what is beyond the budget by more than that.
+bool Making::is_affordable(const Grid& coarse) {
+  constexpr std::size_t asked = 200;
+  constexpr double unsure = 8;
+  if (!check_grid(coarse, run_, diagnostics_)) return false;
+  const auto source = source_on_(coarse);
+  if (!source) return false;
+  TriangleMesh mesh;
+  MemoryMeshSink sink(mesh);
+  if (!contour(*source, sink, {}, run_, diagnostics_)) return false;
+  out_.grid_samples += coarse.node_count();
+  std::vector<PointNearSurface> middles;
+  const std::size_t step = mesh.triangles.size() / asked + 1;
+  for (std::size_t t = 0; t < mesh.triangles.size(); t += step) {
+    const Vec3 a = mesh.points[mesh.triangles[t][0]], b = mesh.points[mesh.triangles[t][1]];
+    if (planes_of(coarse.box, a) == 0 && planes_of(coarse.box, b) == 0) middles.push_back({(a + b) / 2, 0, 0});
+  }
+  if (middles.empty()) return true;
+  SurfaceFeet feet(*source, not_stopped());
+  std::vector<double> distances;
+  feet.distances(middles, 0.01 * largest_spacing(coarse), distances);
+  out_.surface_samples += feet.asked();
+  if (!go_on()) return false;
+  double times = 0;
+  for (const double d : distances) times += std::max(1.0, d / options_.tolerance);
+  const double triangles = times / static_cast<double>(middles.size()) * static_cast<double>(mesh.triangles.size());
+  return triangles * static_cast<double>(RefinableMesh::bytes_per_triangle) <=
+             unsure * static_cast<double>(run_.max_memory_bytes) ||
+         fits(triangles);
+}
+
 // The coarsest of grids, each twice as fine as the one before, on which few edges are farther from the surface than a
 // quarter of a cell: where a mesh is that close, it turns where the surface turns.
 bool Making::resolve(Grid grid) {
@@ -114,6 +147,10 @@ bool Making::resolve(Grid grid) {
     if (!go_on()) return false;
     const bool seen = !empty && refinable_->share_beyond(std::max(near * spacing, options_.tolerance)) <= few;
     if (seen || (empty && halvings == most_halvings_of_nothing)) return true;
+    // Where the field has kinks that no grid resolves, a finer one only costs: what it would add, refining adds where
+    // it is needed.
+    const auto triangles = static_cast<double>(refinable_->mesh().triangles.size());
+    if (!empty && 4 * triangles > refinable_->triangles_for(options_.tolerance)) return true;
     grid = with_spacing(grid.box, spacing / 2);
   }
 }
@@ -138,6 +175,7 @@ bool Making::to_tolerance(const Grid& first) {
   // No coarser than what a feature takes to be seen, nor so coarse that a plain shape is lost.
   const double spacing =
       options_.smallest_feature > 0 ? std::min(options_.smallest_feature, longest / 16) : longest / 32;
+  if (!is_affordable(with_spacing(first.box, longest / 16))) return false;
   if (!resolve(with_spacing(first.box, spacing)) || !refine()) return false;
   out_.distance = refinable_->distance();
   if (out_.distance > options_.tolerance)

@@ -50,6 +50,7 @@ struct Program {
   std::vector<Instruction> instructions;
   std::optional<Box3> box;                                    ///< -b; absent: the solid's own
   std::vector<double> samples{1e6};                           ///< -s: one number in all, or three along the axes
+  bool has_samples = false;                                   ///< -s was given
   std::string output = "out.ply";                             ///< -o
   std::vector<GivenFlag> caller_flags;                        ///< in order; the last of equals is meant
   enum class Asks { mesh, help, version } asks = Asks::mesh;  ///< help and version: the rest was not read

@@ -1,0 +1,195 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""Words as documents and back, and meshes to an accuracy, as the command makes them.
+
+usage: words_and_accuracy_test.py MESO
+"""
+
+import collections
+import json
+import math
+import pathlib
+import shlex
+import subprocess
+import sys
+import tempfile
+import unittest
+
+MESO = pathlib.Path(sys.argv.pop(1)).resolve()
+EXAMPLES = pathlib.Path(__file__).resolve().parents[2] / "examples"
+HAS_CONVERT = "convert" in subprocess.run([MESO, "--help"], capture_output=True, text=True).stdout
+
+
+class Command(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+
+    def meso(self, code, verb, words, says=""):
+        done = subprocess.run([MESO, verb, *shlex.split(words)], cwd=self.folder, capture_output=True, text=True, timeout=120)
+        self.assertEqual(done.returncode, code, f"meso {verb} {words}\n{done.stderr}")
+        self.assertIn(says, done.stderr + done.stdout, words)
+        return done.stdout
+
+    def bytes(self, name):
+        return (self.folder / name).read_bytes()
+
+
+class WordsAsDocuments(Command):
+    DESIGNS = [
+        "tpms.gyroid scale 1.5 shell 0.4 ball scale 2 intersection -s 30^3",
+        "tpms.gyroid shell '0.3 + 0.1*x' -b 0,0,0,2,1,0.7 -s 30,20,14",
+        "tpms.gyroid density 0.3 tpms.p scale 0.7 union -b -.1,-.2,-.3,.9,1.1,.7 -s 20^3",
+        "box scale 2 ball scale 2.4 difference rotate 1,2,3 0.7 -s 24^3",
+        "strut.octet 0.07 def core box scale 1.2 dup shell 0.2 swap recall core intersection union -s 24^3",
+        "ball box move 1,1,1 smooth-union 0.3 mirror 1,1,0 complement -s 20^3",
+        "tpms.gyroid tpms.d blend '(x + 1)/2' -s 20^3",
+    ]
+
+    @unittest.skipUnless(HAS_CONVERT, "this build does not convert")
+    def test_same_bytes(self):
+        for words in self.DESIGNS:
+            with self.subTest(words=words):
+                self.meso(0, "sdf", f"{words} -o words.ply")
+                self.meso(0, "sdf", f"{words} -o part.meso")
+                self.meso(0, "validate", "part.meso")
+                self.meso(0, "convert", "part.meso part.ply")
+                self.assertEqual(self.bytes("part.ply"), self.bytes("words.ply"))
+                printed = self.meso(0, "sdf", "--print part.meso").strip()
+                self.meso(0, "sdf", f"{printed} -o printed.ply")
+                self.assertEqual(self.bytes("printed.ply"), self.bytes("words.ply"), printed)
+        self.meso(0, "convert", "part.meso sharp.stl --sharp")
+        self.meso(0, "sdf", f"{self.DESIGNS[-1]} --sharp -o words.stl")
+        self.assertEqual(self.bytes("sharp.stl"), self.bytes("words.stl"))
+
+    @unittest.skipUnless(HAS_CONVERT, "this build does not convert")
+    def test_meshes_are_referred_to(self):
+        self.meso(0, "sdf", "torus 1,0.4 -s 20^3 -o torus.stl")
+        (self.folder / "deep").mkdir()
+        words = "file torus.stl tpms.p scale 0.5 intersection -s 20^3"
+        self.meso(0, "sdf", f"{words} -o deep/part.meso")
+        self.meso(0, "convert", "deep/part.meso part.ply")
+        self.meso(0, "sdf", f"{words} -o words.ply")
+        self.assertEqual(self.bytes("part.ply"), self.bytes("words.ply"))
+        printed = self.meso(0, "sdf", "--print deep/part.meso").strip()
+        self.meso(0, "sdf", f"{printed} -o printed.ply")
+        self.assertEqual(self.bytes("printed.ply"), self.bytes("words.ply"))
+
+    def test_what_cannot_be_said_is_named(self):
+        self.meso(4, "sdf", "ball box union shell 0.1 -o part.meso", says="SDF_NOT_A_DOCUMENT: no document is written: 'shell'")
+        self.assertFalse((self.folder / "part.meso").exists())
+        self.meso(4, "sdf", "tpms.gyroid cylindrical 8 -o part.meso", says="'cylindrical'")
+        self.meso(2, "sdf", "ball --sharp -o part.meso", says="USAGE")
+        self.meso(4, "sdf", f"--print {EXAMPLES / 'implicit' / 'gyroid_ball.meso'}", says="SDF_NOT_WORDS")
+        self.meso(2, "sdf", "--print part.meso ball", says="USAGE")
+        self.meso(3, "sdf", "--print none.meso", says="FILE_NOT_FOUND")
+        self.meso(0, "sdf", "ball -o part.meso")
+        self.meso(7, "sdf", "ball -o part.meso --no-clobber", says="WRITE_EXISTS")
+
+    def test_new_words_have_faults(self):
+        for words, says in [
+            ("ball recall a", "no solid is named 'a'"),
+            ("ball def wall recall wal", "did you mean 'wall'?"),
+            ("drop", "SDF_STACK_UNDERFLOW"),
+            ("ball over union", "SDF_STACK_UNDERFLOW"),
+            ("ball dup", "SDF_STACK_LEFT"),
+            ("ball density 0.5", "no period to fill"),
+            ("tpms.gyroid density 1.5", "a share lies between 0 and 1"),
+            ("ball shell 'x + w'", "there is no name 'w'"),
+            ("strut.bcc 0.3", "less than a quarter"),
+            ("strut.bbc 0.1", "did you mean 'strut.bcc'?"),
+            ("ball repeat 0,0,0", "steps are positive"),
+            ("ball cylindrical 0", "it would not be bent"),
+            ("ball box smooth-union -1", "not negative"),
+        ]:
+            with self.subTest(words=words):
+                self.meso(2, "sdf", words, says=says)
+
+
+def read_off(path):
+    words = path.read_text().split()
+    count, faces = int(words[1]), int(words[2])
+    numbers = words[4:]
+    points = [tuple(map(float, numbers[3 * i: 3 * i + 3])) for i in range(count)]
+    rest = numbers[3 * count:]
+    return points, [tuple(map(int, rest[4 * i + 1: 4 * i + 4])) for i in range(faces)]
+
+
+class Accuracy(Command):
+    def mesh(self, words, code=0, says=""):
+        report = json.loads(self.meso(code, "sdf", f"{words} -o mesh.off --json", says=says))
+        return (report, *read_off(self.folder / "mesh.off"))
+
+    def assert_closed(self, triangles):
+        edges = collections.Counter()
+        for t in triangles:
+            for i in range(3):
+                edges[t[i], t[(i + 1) % 3]] += 1
+        self.assertTrue(all(count == 1 and edges[b, a] == 1 for (a, b), count in edges.items()))
+
+    def farthest_from_ball(self, points, triangles):
+        """At vertices, middles of edges and of triangles."""
+        worst = max(abs(math.hypot(*p) - 1) for p in points)
+        for t in triangles:
+            a, b, c = (points[i] for i in t)
+            middle = [sum(x) / 3 for x in zip(a, b, c)]
+            half = [sum(x) / 2 for x in zip(a, b)]
+            worst = max(worst, abs(math.hypot(*middle) - 1), abs(math.hypot(*half) - 1))
+        return worst
+
+    def test_tolerance_holds_on_a_ball(self):
+        counts = []
+        for tolerance in (0.02, 0.002):
+            report, points, triangles = self.mesh(f"ball --tolerance {tolerance}")
+            self.assert_closed(triangles)
+            self.assertLessEqual(report["accuracy"]["distance"], tolerance)
+            # Told distances are to the surface from points on the mesh: nothing is farther but for rounding to floats.
+            self.assertLessEqual(self.farthest_from_ball(points, triangles), tolerance + 1e-6)
+            counts.append(len(triangles))
+        self.assertLess(counts[1], 20 * counts[0], "about as tolerance over tolerance")
+
+    def test_simplified_stays_as_close(self):
+        plain = len(self.mesh("ball -s 40^3")[2])
+        report, points, triangles = self.mesh("ball -s 40^3 --simplify 0.01")
+        self.assert_closed(triangles)
+        self.assertLessEqual(report["accuracy"]["distance"], 0.01)
+        self.assertLessEqual(self.farthest_from_ball(points, triangles), 0.01 + 1e-6)
+        self.assertLess(len(triangles), plain / 5)
+        box = self.mesh("box rotate 1,2,3 0.4 -s 30^3 --sharp --simplify 0.001")
+        self.assert_closed(box[2])
+        self.assertLess(len(box[2]), 200)
+        self.assertAlmostEqual(box[0]["volume"], 8, delta=0.02)
+
+    def test_sharp_edges_are_on_the_solid(self):
+        # A box turned about z; its edges along z go through (sqrt(2) cos a, sqrt(2) sin a).
+        angle, h = 0.3, 3 / 40
+        words = "box rotate 0,0,1 0.3 cylinder scale 0.4 difference -b -1.5,-1.5,-1.5,1.5,1.5,1.5 -s 41,41,41"
+        corner = [math.sqrt(2) * math.cos(angle + math.pi / 4), math.sqrt(2) * math.sin(angle + math.pi / 4)]
+
+        def edge_error(points):
+            """The farthest of the points nearest to the edge, at heights well inside."""
+            return max(min(math.hypot(p[0] - corner[0], p[1] - corner[1]) for p in points if abs(p[2] - z) < h) for z in (-0.5, 0, 0.5))
+
+        plain, sharp = self.mesh(words), self.mesh(words + " --sharp")
+        self.assert_closed(sharp[2])
+        self.assertGreater(edge_error(plain[1]), 0.05 * h)
+        self.assertLess(edge_error(sharp[1]), 1e-3 * h)
+        true = 8 - 2 * math.pi * 0.4 ** 2
+        self.assertAlmostEqual(sharp[0]["volume"], true, delta=3e-3)
+        self.assertLess(abs(sharp[0]["volume"] - true), abs(plain[0]["volume"] - true))
+
+    def test_limits_and_flags(self):
+        self.meso(6, "sdf", "tpms.gyroid --tolerance 1e-9 --timeout 60", says="LIMIT_TOLERANCE")
+        self.meso(2, "sdf", "ball -s 40^3 --tolerance 0.01", says="--tolerance picks the samples")
+        self.meso(2, "sdf", "ball --tolerance 0", says="USAGE")
+        if not HAS_CONVERT:
+            return
+        tube, wall = (EXAMPLES / "implicit" / f"{name}.meso" for name in ("gyroid_tube", "wall_of_a_length"))
+        self.meso(6, "convert", f"{wall} a.stl --tolerance 1e-9mm --timeout 60", says="LIMIT_TOLERANCE")
+        for flag in ("--samples 40", "--spacing 1mm"):
+            self.meso(2, "convert", f"{tube} a.stl --tolerance 0.1mm {flag}", says="--tolerance picks the samples")
+
+
+if __name__ == "__main__":
+    unittest.main()
