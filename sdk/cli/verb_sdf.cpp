@@ -162,11 +162,13 @@ bool is_document(const std::string& path) { return path.ends_with(".meso"); }
 
 /// A design as a document; what only meshes have is refused.
 int write_document(Run& run, const sdf::Program& program, const operations::SdfOptions& options) {
-  if (options.polish || options.no_slivers || options.double_coordinates || options.sharp || options.tolerance > 0 ||
-      options.simplify > 0 || options.strict_math || options.ascii)
-    run.usage_error("a document states the design; --sharp, --tolerance and the like are flags of convert");
-  else
-    operations::write_words(program, options.existing, options.run, run.sink);
+  const bool has_flags_of_meshes = options.polish || options.no_slivers || options.double_coordinates ||
+                                   options.sharp || options.tolerance > 0 || options.simplify > 0 ||
+                                   options.strict_math || options.ascii;
+  if (has_flags_of_meshes)
+    return run.usage_error("a document states the design; --sharp, --tolerance and the like are flags of convert"),
+           run.finish(Json{{"output", program.output}});
+  if (!operations::write_words(program, options.existing, options.run, run.sink)) return run.finish(Json::object());
   return run.finish(Json{{"output", program.output}});
 }
 

@@ -333,10 +333,11 @@ std::optional<Operand> DocumentMaker::macrostructure(Index node) {
 std::optional<Operand> DocumentMaker::file(Index node) {
   std::error_code error;
   const auto path = std::filesystem::absolute(word(node).text, error);
-  const auto from = std::filesystem::absolute(folder_.empty() ? "." : folder_, error);
-  Macrostructure made{
-      .id = {name(node) + "Body"},
-      .body = ImportBody{.href = {path.lexically_relative(from).generic_string()}, .unit = LengthUnit::millimeter}};
+  const auto from = std::filesystem::absolute(folder_.empty() ? "." : folder_, error).lexically_normal();
+  const auto href = path.lexically_normal().lexically_relative(from);
+  if (href.empty() || *href.begin() == "..") return fault(node, "the mesh does not lie in the document's folder");
+  Macrostructure made{.id = {name(node) + "Body"},
+                      .body = ImportBody{.href = {href.generic_string()}, .unit = LengthUnit::millimeter}};
   const std::string id = made.id.text;
   document_.macrostructures.items.push_back(std::move(made));
   return Operand{Operand::Kind::macrostructure, id};
