@@ -109,6 +109,37 @@ def chain(count, length, radii, ball):
     return document, volume
 
 
+def polyhedron(vertices, faces):
+    return body("<polyhedron>" + "".join(f'<vertex x="{x!r}" y="{y!r}" z="{z!r}"/>' for x, y, z in vertices)
+                + "".join(f'<face vertices="{", ".join(map(str, face))}"/>' for face in faces) + "</polyhedron>")
+
+
+def dodecahedron(edge):
+    """Corners in circular order around each of the twelve directions (0, 1, g), turned cyclically."""
+    g, s = (1 + math.sqrt(5)) / 2, edge * (1 + math.sqrt(5)) / 4
+    signs = (-1, 1)
+    corners = [(x, y, z) for x in signs for y in signs for z in signs]
+    for a in signs:
+        for b in signs:
+            corners += [(0, a / g, b * g), (a / g, b * g, 0), (a * g, 0, b / g)]
+    faces = []
+    for a in signs:
+        for b in signs:
+            for n in ((0, a * 1, b * g), (a * g, 0, b * 1), (a * 1, b * g, 0)):
+                height = [sum(u * v for u, v in zip(n, c)) for c in corners]
+                face = [i for i, h in enumerate(height) if h > max(height) - 1e-9]
+                middle = [sum(corners[i][k] for i in face) / 5 for k in range(3)]
+                u = [corners[face[0]][k] - middle[k] for k in range(3)]
+                v = [n[1] * u[2] - n[2] * u[1], n[2] * u[0] - n[0] * u[2], n[0] * u[1] - n[1] * u[0]]
+                size = math.hypot(*n)
+
+                def angle(i, u=u, v=v, middle=middle, size=size):
+                    d = [corners[i][k] - middle[k] for k in range(3)]
+                    return math.atan2(sum(p * q for p, q in zip(d, v)) / size, sum(p * q for p, q in zip(d, u)))
+                faces.append(sorted(face, key=angle))
+    return polyhedron([tuple(s * c for c in p) for p in corners], faces)
+
+
 def cases(quick):
     yield "box 4 × 5 × 6", "abc", body('<box dx="4" dy="5" dz="6"/>'), 120.0
     yield "ball, r = 3", "4πr³/3", body('<sphere radius="3"/>'), ball_volume(3)
@@ -122,6 +153,16 @@ def cases(quick):
     yield "torus 3, 2.9, tilted", "2π²Rr²", body('<torus ax="1" ay="2" az="2" majorRadius="3" minorRadius="2.9"/>'), 2 * PI ** 2 * 3 * 2.9 ** 2
     yield "hexagonal prism, edge 2, h = 7", "3√3 a²h/2", body('<extrusion height="7">' + "".join(
         f'<point x="{2 * math.cos(k * PI / 3)!r}" y="{2 * math.sin(k * PI / 3)!r}"/>' for k in range(6)) + "</extrusion>"), 1.5 * math.sqrt(3) * 4 * 7
+    yield "wedge 6 × 4, h = 3, top 2 × 1", "h(A + 4M + B)/6", body('<wedge dx="6" dy="4" dz="3" topX="1" topY="2" topDx="2" topDy="1"/>'), 3 * (24 + 4 * 10 + 2) / 6
+    yield "roof 6 × 4, h = 3, ridge 2", "h(A + 4M)/6", body('<wedge dx="6" dy="4" dz="3" topX="2" topY="2" topDx="2" topDy="0"/>'), 3 * (24 + 4 * 8) / 6
+    yield "oblique pyramid 6 × 4, h = 3", "abh/3", body('<wedge dx="6" dy="4" dz="3" topX="9" topY="-2" topDx="0" topDy="0"/>'), 24.0
+    yield "revolved L, r = 1–4", "2π Σ Rᵢ Aᵢ", body('<revolution>' + "".join(
+        f'<point r="{r}" z="{z}"/>' for r, z in ((1, -1), (4, -1), (4, 1), (2, 1), (2, 3), (1, 3))) + "</revolution>"), 36 * PI
+    yield "turned pencil, r = 2", "πr²(h + t/3)", body('<revolution>' + "".join(
+        f'<point r="{r}" z="{z}"/>' for r, z in ((0, 0), (2, 0), (2, 5), (0, 8))) + "</revolution>"), 24 * PI
+    yield "octahedron, edge 3√2", "√2 a³/3", polyhedron([(3, 0, 0), (-3, 0, 0), (0, 3, 0), (0, -3, 0), (0, 0, 3), (0, 0, -3)],
+        [(a, b, c) if (a % 2 + b % 2 + c % 2) % 2 == 0 else (b, a, c) for a in (0, 1) for b in (2, 3) for c in (4, 5)]), 36.0
+    yield "dodecahedron, edge 2", "(15 + 7√5)a³/4", dodecahedron(2), (15 + 7 * math.sqrt(5)) * 2
     yield "polar sector 5–10, 60°, h = 3", "θ(R² − r²)h/2", sector(POLAR, [(5, 10), (0, "60deg"), (0, 3)]), PI / 6 * 75 * 3
     yield "ring 5–10, h = 3", "π(R² − r²)h", sector(POLAR, [(5, 10), (0, "360deg"), (0, 3)]), PI * 75 * 3
     yield "spherical sector 5–10, 90°, ±30°", "(R³ − r³)/3 · θ · (sin β − sin α)", sector(

@@ -81,6 +81,39 @@ def extrusion(points, z, height):
     return f'<extrusion z="{z}" height="{height}">{corners}</extrusion>', inside
 
 
+def wedge(c, size, top, top_size):
+    """Between two rectangles: at each height a rectangle whose corner and size are on straight lines."""
+    text = (f'<wedge x="{c[0]}" y="{c[1]}" z="{c[2]}" dx="{size[0]}" dy="{size[1]}" dz="{size[2]}" topX="{top[0]}" topY="{top[1]}" '
+            f'topDx="{top_size[0]}" topDy="{top_size[1]}"/>')
+
+    def inside(p):
+        t = (p[2] - c[2]) / size[2]
+        return 0 <= t <= 1 and all(0 <= p[i] - c[i] - t * top[i] <= size[i] + t * (top_size[i] - size[i]) for i in (0, 1))
+    return text, inside
+
+
+def revolution(points):
+    profile = extrusion(points, -1, 2)[1]
+    corners = "".join(f'<point r="{r}" z="{z}"/>' for r, z in points)
+    return f"<revolution>{corners}</revolution>", lambda p: profile([math.hypot(p[0], p[1]), p[2], 0])
+
+
+def pyramid_star(c, radii, height):
+    """Two pyramids, up and down, over a star-shaped polygon about c: at each height a smaller star."""
+    n = len(radii)
+    ring = [(round(r * math.cos(2 * math.pi * k / n), 4), round(r * math.sin(2 * math.pi * k / n), 4)) for k, r in enumerate(radii)]
+    vertices = [(c[0] + x, c[1] + y, c[2]) for x, y in ring] + [(c[0], c[1], c[2] + height), (c[0], c[1], c[2] - height)]
+    faces = [(k, (k + 1) % n, n) for k in range(n)] + [((k + 1) % n, k, n + 1) for k in range(n)]
+    text = "".join(f'<vertex x="{x!r}" y="{y!r}" z="{z!r}"/>' for x, y, z in vertices)
+    text += "".join(f'<face vertices="{", ".join(map(str, f))}"/>' for f in faces)
+    star = extrusion(ring, -1, 2)[1]
+
+    def inside(p):
+        t = 1 - abs(p[2] - c[2]) / height
+        return t > 0 and star([(p[0] - c[0]) / t, (p[1] - c[1]) / t, 0])
+    return f"<polyhedron>{text}</polyhedron>", inside
+
+
 def rotation(axis, angle):
     n = math.hypot(*axis)
     x, y, z = (v / n for v in axis)
@@ -156,6 +189,31 @@ def random_primitive(rng):
         corners = [0.1, 2.2, 4.4]
     points = [(round(5 * math.cos(t), 3), round(4 * math.sin(t), 3)) for t in corners]
     return extrusion(points, number(rng, -4, 0), number(rng, 2, 6))
+
+
+def random_faced(rng):
+    kind = rng.randrange(3)
+    if kind == 0:
+        return wedge(place(rng, 4), [number(rng, 3, 7) for _ in range(3)], [number(rng, -1, 3) for _ in range(2)],
+                     [rng.choice((0, number(rng, 0.5, 5))) for _ in range(2)])
+    if kind == 1:
+        inner = rng.choice((0, 0, number(rng, 0.5, 2)))
+        outer = [number(rng, 3, 6) for _ in range(3)]
+        return revolution([(inner, -4), (outer[0], -4), (outer[1], number(rng, -2, 0)), (outer[2], number(rng, 1, 4)), (inner, 4.5)])
+    return pyramid_star(place(rng, 3), [number(rng, 2, 6) for _ in range(rng.randrange(4, 8))], number(rng, 2, 6))
+
+
+def faced(rng):
+    """Wedges, revolutions and polyhedra, alone or with another body, turned or stretched."""
+    shape = random_faced(rng)
+    if rng.random() < 0.7:
+        shape = boolean(rng.choice(("union", "difference", "intersection")), [shape, rng.choice((random_faced, random_primitive))(rng)])
+    change = rng.randrange(3)
+    if change == 1:
+        shape = turned(shape, place(rng, 3)[:2] + [1], number(rng, -3, 3))
+    if change == 2:
+        shape = scaled(shape, [number(rng, 0.6, 1.5) for _ in range(3)])
+    return document(shape[0]), shape[1], ([-20] * 3, [20] * 3)
 
 
 def random_tree(rng, depth):
@@ -407,7 +465,7 @@ def graded(rng):
     return document(macro[0], rest, '<apply pattern="p" operation="intersection"/>'), inside, (low, high)
 
 
-KINDS = {f.__name__: f for f in (csg, lattice, clipped, boundary, sectors, graded)}
+KINDS = {f.__name__: f for f in (csg, lattice, clipped, boundary, sectors, graded, faced)}
 
 
 # ---- comparison -------------------------------------------------------------------------------------------------

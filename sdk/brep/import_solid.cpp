@@ -8,23 +8,31 @@
 #include <algorithm>
 #include <cctype>
 #include <istream>
-#include <mutex>
 
 #include "boolean.hpp"
+#include "import_kernel.hpp"
 #include "import_stl.hpp"
+#include "meso/brep/read_step.hpp"
 #include "meso/brep/step_text.hpp"
 #include "meso/resource/resource.hpp"
 #include "solid_primitive.hpp"
+#include "view_buffer.hpp"
 
 namespace meso::brep {
 namespace {
 
 using std::filesystem::path;
 
-std::string lower_extension(const path& file) {
+enum class FileKind { step, iges, brep, stl, other };
+
+FileKind kind_of(const path& file) {
   std::string text = file.extension().string();
   std::ranges::transform(text, text.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return text;
+  return text == ".step" || text == ".stp"   ? FileKind::step
+         : text == ".iges" || text == ".igs" ? FileKind::iges
+         : text == ".brep"                   ? FileKind::brep
+         : text == ".stl"                    ? FileKind::stl
+                                             : FileKind::other;
 }
 
 bool hash_holds(const eval::ImportShape& import, ElementId where, const SolidContext& context) {
@@ -36,24 +44,9 @@ bool hash_holds(const eval::ImportShape& import, ElementId where, const SolidCon
   return false;
 }
 
-/// OpenCASCADE's reader keeps its settings in process-wide variables, and writes to standard output.
-std::mutex& step_mutex() {
-  static std::mutex mutex;
-  return mutex;
-}
-
-/// A stream that reads where the bytes are.
-class ViewBuffer final : public std::streambuf {
- public:
-  explicit ViewBuffer(std::string_view bytes) {
-    char* begin = const_cast<char*>(bytes.data());  // the interface is not const, reading is
-    setg(begin, begin, begin + bytes.size());
-  }
-};
-
 /// Null if no root could be transferred.
 TopoDS_Shape read_step_shape(const std::string& name, std::string_view text) {
-  const std::scoped_lock lock(step_mutex());
+  const std::scoped_lock lock(reader_mutex());
   Message::DefaultMessenger()->ChangePrinters().Clear();
   STEPControl_Reader reader;
   Interface_Static::SetCVal("xstep.cascade.unit", "MM");
@@ -83,6 +76,23 @@ std::optional<Solids> read_step(const Resource& file, ElementId where, const Sol
   return solids_of(shape);
 }
 
+std::optional<Solids> read_solids(const Resource& file, ElementId where, const SolidContext& context) {
+  switch (kind_of(file.name())) {
+    case FileKind::step:
+      return read_step(file, where, context);
+    case FileKind::iges:
+      return read_iges_solids(file, where, context);
+    case FileKind::brep:
+      return read_brep_solids(file, where, context);
+    case FileKind::stl:
+      return read_stl_solids(file, where, context);
+    case FileKind::other:
+      break;
+  }
+  context.report(Code::import_no_reader, where, {file.name().string()});
+  return {};
+}
+
 /// What is wrong with imported solids, or nothing.
 std::optional<std::string> fault_of(const Solids& solids) {
   if (solids.empty()) return "no solid in it";
@@ -97,18 +107,15 @@ std::optional<std::string> fault_of(const Solids& solids) {
 
 }  // namespace
 
+bool is_exact_file(const path& file) {
+  const FileKind kind = kind_of(file);
+  return kind == FileKind::step || kind == FileKind::iges || kind == FileKind::brep;
+}
+
 std::optional<Solids> import_solids(const eval::ImportShape& import, const Affine& map, ElementId where,
                                     const SolidContext& context) {
   if (!hash_holds(import, where, context)) return {};
-  const std::string extension = lower_extension(import.file.name());
-  std::optional<Solids> read;
-  if (extension == ".step" || extension == ".stp") {
-    read = read_step(import.file, where, context);
-  } else if (extension == ".stl") {
-    read = read_stl_solids(import.file, where, context);
-  } else {
-    context.report(Code::import_no_reader, where, {import.file.name().string()});
-  }
+  std::optional<Solids> read = read_solids(import.file, where, context);
   if (!read) return {};
   if (const auto fault = fault_of(*read)) {
     context.report(Code::import_not_closed, where, {import.file.name().string(), *fault});

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Bodies in foreign files as solids: STEP with its own unit, STL as flat facets. Private.
+// Bodies in foreign files as solids: STEP and IGES with their own unit, BREP, STL as flat facets. Private.
 //
 // A stated SHA-256 must match (IMPORT_CHANGED). The file must hold at least one solid, and each must be closed with a
 // positive volume (IMPORT_NOT_CLOSED); nothing is healed. STEP costs about 1 ms a face, growing faster than the number

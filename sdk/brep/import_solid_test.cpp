@@ -3,13 +3,20 @@
 
 #include <gtest/gtest.h>
 
+#include <BRepBuilderAPI_Sewing.hxx>
+#include <BRepPrimAPI_MakeCylinder.hxx>
+#include <IGESControl_Controller.hxx>
+#include <IGESControl_Writer.hxx>
+#include <Interface_Static.hxx>
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <numbers>
 #include <sstream>
 
 #include "boolean.hpp"
+#include "meso/brep/read_step.hpp"
 #include "meso/brep/step_text.hpp"
 
 namespace meso::brep {
@@ -173,6 +180,23 @@ TEST_F(ImportSolids, SolidsThatOverlapAreUnited) {
   EXPECT_NEAR(volume, 1500, 1e-6);
 }
 
+TEST_F(ImportSolids, SurfacesThatCrossThemselves) {
+  // A tetrahedron whose bottom is drawn out, through the side over it.
+  const std::array<Vec3, 5> points{{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, {1, 1, 3}, {6, 6, 1}}};
+  std::ostringstream out;
+  out << "solid spike\n";
+  for (const auto& triangle : {std::array{0, 2, 4}, {2, 1, 4}, {1, 0, 4}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}}) {
+    out << "facet normal 0 0 0\nouter loop\n";
+    for (const int i : triangle) {
+      const Vec3 p = points[static_cast<std::size_t>(i)];
+      out << "vertex " << p.x << ' ' << p.y << ' ' << p.z << '\n';
+    }
+    out << "endloop\nendfacet\n";
+  }
+  out << "endsolid spike\n";
+  expect_refused(written("spike.stl", out.str()), Code::import_overlaps);
+}
+
 TEST_F(ImportSolids, CavitiesOfStlAreVoids) {
   // A cube of edge 10 with a cube of edge 4 taken out of its middle, and that of edge 1 standing in the cavity.
   const std::string one = cube_stl();
@@ -225,6 +249,99 @@ TEST_F(ImportSolids, ChangedFile) {
   EXPECT_FALSE(imported({.file = beam, .sha256 = std::string(64, '0')}));
   ASSERT_FALSE(sink_.diagnostics().empty());
   EXPECT_EQ(sink_.diagnostics().front().code, Code::import_changed);
+}
+
+// Files that OpenCASCADE writes here and now: BREP, and IGES as loose faces or as a solid.
+
+TopoDS_Shape cylinder() { return BRepPrimAPI_MakeCylinder(3, 7).Solid(); }
+/// An ellipsoid as a B-spline surface.
+TopoDS_Shape free_form() {
+  gp_GTrsf stretched;
+  stretched.SetValue(1, 1, 2);
+  stretched.SetValue(3, 3, 0.5);
+  return BRepBuilderAPI_GTransform(BRepPrimAPI_MakeSphere(3).Solid(), stretched, true).Shape();
+}
+/// A box with a ball taken out of its middle.
+TopoDS_Shape hollow() {
+  return BRepAlgoAPI_Cut(BRepPrimAPI_MakeBox(10, 10, 10).Solid(), BRepPrimAPI_MakeSphere(gp_Pnt(5, 5, 5), 3).Solid())
+      .Shape();
+}
+const double hollow_volume = 1000 - 36 * std::numbers::pi;
+
+std::string brep_of(const TopoDS_Shape& shape) {
+  std::ostringstream out;
+  BRepTools::Write(shape, out);
+  return out.str();
+}
+
+std::string iges_of(const TopoDS_Shape& shape, const char* unit, bool as_solid, const std::filesystem::path& file) {
+  IGESControl_Controller::Init();
+  IGESControl_Writer writer(unit, as_solid ? 1 : 0);
+  writer.AddShape(shape);
+  writer.ComputeModel();
+  EXPECT_TRUE(writer.Write(file.string().c_str()));
+  return text_of(file);
+}
+
+double volume_sum(const std::optional<Solids>& solids) {
+  double sum = 0;
+  for (const TopoDS_Shape& solid : solids.value_or(Solids{})) sum += volume_of(solid);
+  return sum;
+}
+
+TEST_F(ImportSolids, BrepFiles) {
+  const auto read = [&](const TopoDS_Shape& shape, double scale) {
+    return volume_sum(imported({.file = written("a.brep", brep_of(shape)), .scale = scale}));
+  };
+  EXPECT_NEAR(read(BRepPrimAPI_MakeBox(2, 3, 4).Solid(), 10), 24000, 1e-6);
+  EXPECT_NEAR(read(cylinder(), 1), 63 * std::numbers::pi, 1e-9);
+  EXPECT_NEAR(read(free_form(), 1) / (36 * std::numbers::pi), 1, 1e-6);
+  EXPECT_NEAR(read(hollow(), 1), hollow_volume, 1e-6);
+  EXPECT_TRUE(is_exact_file("A.BREP"));
+  EXPECT_FALSE(is_exact_file("a.stl"));
+}
+
+TEST_F(ImportSolids, FilesThatAreNotBrep) {
+  const std::string text = brep_of(hollow());
+  expect_refused(written("empty.brep", ""), Code::import_unreadable);
+  expect_refused(written("garbage.brep", "not a brep file\n"), Code::import_unreadable);
+  expect_refused(folder_ / "missing.brep", Code::import_unreadable);
+  for (const double share : {0.1, 0.5, 0.9, 0.99})
+    expect_refused(written("cut.brep", text.substr(0, static_cast<std::size_t>(share * double(text.size())))),
+                   Code::import_unreadable);
+  expect_refused(written("nan.brep", replaced(text, "10 ", "nan ")), Code::import_unreadable);
+  const TopoDS_Shape face = TopExp_Explorer(cylinder(), TopAbs_FACE).Current();
+  expect_refused(written("face.brep", brep_of(face)), Code::import_not_closed);
+}
+
+TEST_F(ImportSolids, IgesFilesStateTheirUnit) {
+  for (const bool as_solid : {false, true}) {
+    SCOPED_TRACE(as_solid ? "solid" : "loose faces");
+    const auto read = [&](const TopoDS_Shape& shape, const char* unit) {
+      const std::filesystem::path file = folder_ / "a.igs";
+      iges_of(shape, unit, as_solid, file);
+      return volume_sum(imported({.file = file}));
+    };
+    EXPECT_NEAR(read(BRepPrimAPI_MakeBox(2, 3, 4).Solid(), "MM"), 24, 1e-6);
+    EXPECT_NEAR(read(cylinder(), "IN"), 63 * std::numbers::pi, 1e-3);
+    EXPECT_NEAR(read(free_form(), "M") / (36 * std::numbers::pi), 1, 1e-5);
+    EXPECT_NEAR(read(hollow(), "MM"), hollow_volume, 1e-3);
+  }
+}
+
+TEST_F(ImportSolids, IgesInMemory) {
+  const auto text = std::make_shared<const std::string>(iges_of(cylinder(), "MM", false, folder_ / "a.iges"));
+  EXPECT_NEAR(volume_sum(imported({.file = Resource("in a package.iges", text)})), 63 * std::numbers::pi, 1e-3);
+}
+
+TEST_F(ImportSolids, FilesThatAreNotIges) {
+  const std::string text = iges_of(hollow(), "MM", false, folder_ / "a.iges");
+  expect_refused(written("empty.iges", ""), Code::import_unreadable);
+  expect_refused(written("garbage.igs", "not an iges file\n"), Code::import_unreadable);
+  expect_refused(written("cut.igs", text.substr(0, text.size() / 2)), Code::import_unreadable);
+  const TopoDS_Shape face = TopExp_Explorer(cylinder(), TopAbs_FACE).Current();
+  iges_of(face, "MM", false, folder_ / "face.igs");
+  expect_refused(folder_ / "face.igs", Code::import_not_closed);
 }
 
 }  // namespace

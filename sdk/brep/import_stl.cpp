@@ -7,7 +7,9 @@
 #include <numeric>
 
 #include "boolean.hpp"
+#include "box_pairs.hpp"
 #include "facet_tree.hpp"
+#include "meso/base/faces_cross.hpp"
 #include "meso/import_surface_mesh/read_stl.hpp"
 
 namespace meso::brep {
@@ -62,6 +64,29 @@ std::vector<std::size_t> surfaces_of(const TriangleMesh& mesh, std::size_t& coun
     surfaces.push_back(numbers.try_emplace(root(t[0]), numbers.size()).first->second);
   count = numbers.size();
   return surfaces;
+}
+
+/// Two triangles of one surface that cross each other, counted from 1, or nothing. Surfaces that overlap are united.
+std::optional<std::pair<std::size_t, std::size_t>> crossing(const TriangleMesh& mesh,
+                                                            const std::vector<std::size_t>& surfaces) {
+  Polyhedron polyhedron{mesh.points, {}};
+  std::vector<Box3> boxes;
+  Box3 all;
+  for (const auto& t : mesh.triangles) {
+    polyhedron.faces.push_back({t[0], t[1], t[2]});
+    Box3& box = boxes.emplace_back();
+    for (const std::uint32_t point : t) box.extend(mesh.points[point]);
+    all.extend(box.min);
+    all.extend(box.max);
+  }
+  const double tolerance = 1e-9 * norm(all.max - all.min);
+  std::optional<std::pair<std::size_t, std::size_t>> found;
+  visit_meeting_pairs(boxes, [&](std::size_t i, std::size_t k) {
+    if (surfaces[i] != surfaces[k] || !faces_cross(polyhedron, i, k, tolerance)) return;
+    const std::pair<std::size_t, std::size_t> pair = std::minmax(i + 1, k + 1);
+    if (!found || pair < *found) found = pair;
+  });
+  return found;
 }
 
 double volume_of(const std::vector<Triangle>& triangles) {
@@ -134,6 +159,12 @@ std::optional<Solids> read_stl_solids(const Resource& file, ElementId where, con
     builder.Add(shells[surfaces[i]], face);
     const auto& [a, b, c] = mesh->triangles[i];
     triangles[surfaces[i]].push_back({mesh->points[a], mesh->points[b], mesh->points[c]});
+  }
+  if (const auto pair = crossing(*mesh, surfaces)) {
+    context.report(Code::import_overlaps, where,
+                   {name, "triangles " + std::to_string(pair->first) + " and " + std::to_string(pair->second) +
+                              " of one surface cross each other"});
+    return {};
   }
   for (TopoDS_Shell& shell : shells) shell.Closed(true);
   return solids_of_surfaces(shells, std::move(triangles));

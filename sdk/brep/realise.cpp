@@ -6,6 +6,7 @@
 #include <map>
 
 #include "boolean.hpp"
+#include "meso/base/number.hpp"
 #include "meso/brep/instance_map.hpp"
 #include "meso/brep/measure.hpp"
 #include "meso/brep/placement.hpp"
@@ -128,6 +129,8 @@ class PartFold {
       const auto cells = pattern != nullptr ? evaluation_.cells(*pattern, context_.sink) : std::nullopt;
       if (!cells || !eval::check_reach(evaluation_, *cells, apply, part, box_of_all(state.solids), {}, context_.sink))
         return false;
+      const Thickness thickness = strut_thickness(*cells, context_.sink);
+      if (context_.sink.has_errors() || !struts_fit(thickness, 0.5, apply)) return false;
       const bool is_union = apply.operation == ApplyOperation::union_ && state.solids.empty();
       const bool may_be_graph = is_last && is_union && may_be_beam_graph(*cells);
       const bool graph_first = may_be_graph && has_touching_circles(*cells);
@@ -137,7 +140,7 @@ class PartFold {
         return true;
       if (context_.sink.has_errors()) return false;
       if (may_be_graph && !graph_first && try_beam_graph(state, *cells, apply)) return true;
-      if (context_.sink.has_errors()) return false;
+      if (context_.sink.has_errors() || !struts_fit(thickness, 0.4, apply)) return false;
       made = apply_cells(state.solids, *cells, context, counts);
       if (made && !made->reaches && !state.solids.empty() && eval::must_reach(*cells, apply)) {
         eval::report_no_reach(evaluation_, *cells, part, context_.sink);
@@ -153,6 +156,14 @@ class PartFold {
     if (!settle_fragments(state.solids, before, context, part.id.text, counts)) return false;
     state.pieces_volume = state.solids.size() == solids ? made->pieces_volume : 0;
     return true;
+  }
+
+  /// Booleans of struts that fill their cells take minutes and fail. Half a cell is refused before anything is tried.
+  bool struts_fit(const Thickness& thickness, double most, const Apply& apply) {
+    if (thickness.ratio() <= most) return true;
+    context_.report(Code::geometry_struts_thick, apply.id_in_source,
+                    {format_number(thickness.radius), format_number(thickness.edge)});
+    return false;
   }
 
   bool try_lattice(Folded& state, const eval::CellStream& cells, const FoldContext& context, const std::string& part) {

@@ -222,6 +222,81 @@ TEST_F(BeamGraphTest, ATrussBendsIntoATube) {
   expect_triangles(made->body, 0.05);
 }
 
+/// Six sectors around the axis, from pole to pole or short of them; `bcc` in fractions of the sectors.
+std::string sphere(const std::string& cells, double from_deg, int rings) {
+  return "<coordinateSystems><coordinateSystem id='ball'><axis name='rho' kind='distance' x='1'/><axis name='phi' "
+         "kind='circular' z='1'/><axis name='psi' kind='circular' y='-1'/></coordinateSystem></coordinateSystems>" +
+         cells +
+         union_of(
+             "<loop index='i' axis='rho' count='1' start='10' spacing='4'/>"
+             "<loop index='j' axis='phi' count='6' spacing='60deg'/><loop index='k' axis='psi' count='" +
+                 std::to_string(rings) + "' start='" + std::to_string(from_deg) + "deg' spacing='30deg'/>",
+             "coordinateSystem='ball' mapping='conformal'");
+}
+
+TEST_F(BeamGraphTest, ATrussBendsIntoABallPolesIncluded) {
+  // Nodes: two spheres of 2 poles and 5 rings of 6, and 36 centres. A centre has 8 beams, 6 where 2 end in a pole
+  // twice.
+  const auto made = realised(sphere(bcc("0.15", "auto"), -90, 6), {.mesh = true, .deflection_mm = 0.01});
+  ASSERT_TRUE(made);
+  EXPECT_EQ(made->way, "beamGraph");
+  EXPECT_EQ(made->body.solids.size(), 1u);
+  EXPECT_TRUE(audit(made->body).clean());
+  EXPECT_NEAR(measure(made->body).volume / made->body.pieces_volume, 1, 1e-9);
+  EXPECT_NEAR(norm(measure(made->body).centroid), 0, 1e-9);
+  std::size_t struts = 0;
+  for (const FaceTemplate& face : made->body.solids[0].outer.geometry->faces)
+    struts += std::holds_alternative<CylinderSurface>(face.surface) ? 1 : 0;
+  EXPECT_EQ(struts, 24u * 8 + 12u * 6);
+  expect_triangles(made->body, 0.05);
+}
+
+TEST_F(BeamGraphTest, BeamsWithoutLengthOrAngleAreTold) {
+  // A beam along the azimuth has no length on a pole.
+  const std::string ring = cell("<box dx='1' dy='1' dz='1'/><beams radius='0.2'>" + node("a", "0", "0", "0") +
+                                node("b", "0", "1", "0") + beam("a", "b") + "</beams>");
+  EXPECT_FALSE(realised(sphere(ring, -90, 1)));
+  EXPECT_EQ(first_code(), Code::body_degenerate);
+  EXPECT_EQ(sink_.diagnostics().size(), 1u);
+  EXPECT_TRUE(realised(sphere(ring, -60, 1)));
+  // Two beams on top of each other.
+  EXPECT_FALSE(
+      realised(cell("<beams radius='0.2' nodeRadius='auto'>" + node("a", "0", "0", "0") + node("b", "2", "2", "2") +
+                    node("c", "4", "4", "4") + beam("a", "b") + beam("a", "c") + "</beams>") +
+               union_of(once)));
+  EXPECT_EQ(first_code(), Code::body_degenerate);
+  EXPECT_EQ(sink_.diagnostics().size(), 1u);
+}
+
+TEST_F(BeamGraphTest, StrutsAsThickAsTheirCellsAreRefusedAtOnce) {
+  for (const char* ball : {"auto", "0"}) {
+    EXPECT_FALSE(realised(bcc("4", ball) + block(2, "")));
+    EXPECT_EQ(first_code(), Code::geometry_struts_thick);
+    EXPECT_EQ(sink_.diagnostics().size(), 1u);
+    EXPECT_FALSE(realised(macrostructure("<box dx='10' dy='10' dz='10'/>") + bcc("4", ball) +
+                          block(2, "").substr(0, block(2, "").find("<parts>")) +
+                          part("<apply pattern='a' operation='intersection'/>")));
+    EXPECT_EQ(first_code(), Code::geometry_struts_thick);
+  }
+  // A single cell has no neighbours to meet, and a rod may be thicker than its cell is long.
+  const std::string rod = node("a", "0", "5", "5") + node("b", "2", "5", "5") + beam("a", "b");
+  const auto made =
+      realised(cell("<box dx='2' dy='10' dz='10'/><beams radius='1.5' nodeRadius='auto'>" + rod + "</beams>") +
+               union_of("<loop index='i' axis='x' count='3' spacing='2'/>"));
+  expect_body(made, "lattice", pi * 2.25 * 6 + 4 * pi / 3 * 1.5 * 1.5 * 1.5);
+}
+
+TEST_F(BeamGraphTest, CellsThatMissTheBodyLeaveNothing) {
+  for (const char* body :
+       {"<box x='100' dx='2' dy='2' dz='2'/>", "<box x='2.4' y='0.1' z='0.1' dx='0.1' dy='0.1' dz='0.1'/>"}) {
+    const std::string lattice = block(2, "");
+    EXPECT_FALSE(realised(macrostructure(body) + bcc("0.2", "auto") + lattice.substr(0, lattice.find("<parts>")) +
+                          part("<apply pattern='a' operation='intersection'/>")));
+    EXPECT_EQ(first_code(), Code::geometry_empty);
+    EXPECT_EQ(sink_.diagnostics().size(), 1u);
+  }
+}
+
 TEST_F(BeamGraphTest, TrianglesDoNotDependOnThreads) {
   const auto triangles = [&](unsigned jobs) {
     const auto made = realised(tube("auto"), {.mesh = true, .deflection_mm = 0.05, .run = {.jobs = jobs}});

@@ -287,6 +287,20 @@ Body part_of(const Body& body, IndexTest takes) {
 
 }  // namespace
 
+Thickness strut_thickness(const eval::CellStream& cells, DiagnosticSink& sink) {
+  const bool is_bent = cells.pattern().mapping.value_or(CellMapping::rigid) == CellMapping::conformal;
+  if (cells.size() < 2 || is_bent || !cells.unit_cell().box ||
+      !std::holds_alternative<BeamsBody>(cells.unit_cell().body))
+    return {};
+  const auto first = first_cell(cells, sink);
+  const auto* beams = first ? std::get_if<eval::BeamsShape>(&first->shape.value) : nullptr;
+  if (beams == nullptr) return {};
+  Thickness out{0, std::max({first->box.size.x, first->box.size.y, first->box.size.z})};
+  for (const eval::Strut& strut : beams->struts)
+    out.radius = std::max({out.radius, strut.radius_from, strut.radius_to});
+  return out;
+}
+
 std::optional<LatticePart> lattice_part(const Solids& macrostructure, const eval::CellStream& cells,
                                         const std::optional<CellRule>& whole_cells,
                                         const std::optional<MeshFineness>& mesh, const SolidContext& context) {

@@ -29,6 +29,14 @@ struct LatticePart {
                                                       const std::optional<MeshFineness>& mesh,
                                                       const SolidContext& context);
 
+/// The largest radius of the first cell's struts, by the longest edge of its box: from 0.5 on, struts of neighbours
+/// that are side by side are one. 0 where there are no neighbours, no box or no struts, or where boxes are bent.
+struct Thickness {
+  double radius = 0, edge = 1;
+  [[nodiscard]] double ratio() const { return radius / edge; }
+};
+[[nodiscard]] Thickness strut_thickness(const eval::CellStream& cells, DiagnosticSink& sink);
+
 /// The same lattice as two small blocks of whole cells, weighted so that cells and walls on the surface add up.
 struct LatticeSample {
   std::vector<WeightedBody> bodies;

@@ -9,6 +9,7 @@
 #include "boolean.hpp"
 #include "ellipsoid.hpp"
 #include "meso/base/number.hpp"
+#include "meso/base/polygon.hpp"
 
 namespace meso::brep {
 namespace {
@@ -37,49 +38,17 @@ bool positions_hold(std::initializer_list<Vec3> points, ElementId where, const S
   return false;
 }
 
-struct Point2 {
-  double x, y;
-};
-
-double turn(Point2 a, Point2 b, Point2 c) { return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x); }
-
-bool on_segment(Point2 a, Point2 b, Point2 p) {
-  return std::min(a.x, b.x) <= p.x && p.x <= std::max(a.x, b.x) && std::min(a.y, b.y) <= p.y &&
-         p.y <= std::max(a.y, b.y);
-}
-
-bool segments_meet(Point2 a, Point2 b, Point2 c, Point2 d) {
-  const double abc = turn(a, b, c), abd = turn(a, b, d), cda = turn(c, d, a), cdb = turn(c, d, b);
-  if (((abc > 0 && abd < 0) || (abc < 0 && abd > 0)) && ((cda > 0 && cdb < 0) || (cda < 0 && cdb > 0))) return true;
-  return (abc == 0 && on_segment(a, b, c)) || (abd == 0 && on_segment(a, b, d)) || (cda == 0 && on_segment(c, d, a)) ||
-         (cdb == 0 && on_segment(c, d, b));
-}
-
-/// What is wrong with a polygon, or nothing.
-std::optional<std::string> polygon_fault(const std::vector<Point2>& p) {
-  const std::size_t n = p.size();
-  if (n < 3) return "needs at least three points";
-  double area = 0;
-  for (std::size_t i = 0; i < n; ++i) {
-    const Point2 a = p[i], b = p[(i + 1) % n], c = p[(i + 2) % n];
-    if (!std::isfinite(a.x) || !std::isfinite(a.y)) return "has a point that is not finite";
-    if (std::hypot(b.x - a.x, b.y - a.y) <= smallest_size)
-      return "has two neighbouring points that coincide (point " + std::to_string(i + 1) + ")";
-    if (turn(a, b, c) == 0 && (b.x - a.x) * (c.x - b.x) + (b.y - a.y) * (c.y - b.y) < 0)
-      return "turns back on itself at point " + std::to_string((i + 1) % n + 1);
-    area += a.x * b.y - a.y * b.x;
-  }
-  for (std::size_t i = 0; i < n; ++i)
-    for (std::size_t j = i + 2; j < n; ++j) {
-      if (i == 0 && j == n - 1) continue;  // neighbours around the end
-      if (segments_meet(p[i], p[i + 1], p[j], p[(j + 1) % n]))
-        return "crosses or touches itself (edges " + std::to_string(i + 1) + " and " + std::to_string(j + 1) + ")";
-    }
-  if (std::fabs(area) / 2 <= smallest_size * smallest_size) return "encloses no area";
-  return {};
-}
-
 TopoDS_Shape unit_sphere() { return BRepPrimAPI_MakeSphere(gp_Ax2(gp::Origin(), gp::DZ()), 1).Solid(); }
+
+TopoDS_Face plane_face(const std::vector<Vec3>& polygon) {
+  std::vector<TopoDS_Vertex> vertices;
+  vertices.reserve(polygon.size());
+  for (const Vec3 p : polygon) vertices.push_back(BRepBuilderAPI_MakeVertex(to_pnt(p)));
+  BRepBuilderAPI_MakeWire wire;
+  for (std::size_t i = 0; i < vertices.size(); ++i)
+    wire.Add(BRepBuilderAPI_MakeEdge(vertices[i], vertices[(i + 1) % vertices.size()]).Edge());
+  return BRepBuilderAPI_MakeFace(wire.Wire(), true).Face();
+}
 
 gp_Trsf to_trsf(const Affine& a) {
   gp_Trsf t;
@@ -123,15 +92,10 @@ TopoDS_Shape mapped(const TopoDS_Shape& solid, const Affine& map) {
 }
 
 TopoDS_Shape prism(const std::vector<Vec3>& polygon, Vec3 sweep, const Affine& map) {
-  std::vector<TopoDS_Vertex> vertices;
-  vertices.reserve(polygon.size());
-  for (const Vec3 p : polygon) vertices.push_back(BRepBuilderAPI_MakeVertex(to_pnt(map * p)));
-  BRepBuilderAPI_MakeWire wire;
-  for (std::size_t i = 0; i < vertices.size(); ++i)
-    wire.Add(BRepBuilderAPI_MakeEdge(vertices[i], vertices[(i + 1) % vertices.size()]).Edge());
-  const TopoDS_Face face = BRepBuilderAPI_MakeFace(wire.Wire(), true).Face();
+  std::vector<Vec3> corners;
+  for (const Vec3 p : polygon) corners.push_back(map * p);
   const Vec3 s = map.linear * sweep;
-  return outward(BRepPrimAPI_MakePrism(face, gp_Vec(s.x, s.y, s.z)).Shape());
+  return outward(BRepPrimAPI_MakePrism(plane_face(corners), gp_Vec(s.x, s.y, s.z)).Shape());
 }
 
 TopoDS_Shape frustum(Vec3 from, Vec3 to, double radius_from, double radius_to) {
@@ -206,17 +170,28 @@ OptionalSolid primitive_solid(const eval::ExtrusionShape& extrusion, const Affin
   if (!positions_hold({{0, 0, extrusion.z}}, where, context) ||
       !sizes_hold({{"height", extrusion.height}}, where, context))
     return {};
-  std::vector<Point2> points;
   std::vector<Vec3> polygon;
-  for (const auto& [x, y] : extrusion.points) {
-    points.push_back({x, y});
-    polygon.push_back({x, y, extrusion.z});
-  }
-  if (const auto fault = polygon_fault(points)) {
+  for (const auto& [x, y] : extrusion.points) polygon.push_back({x, y, extrusion.z});
+  if (const auto fault = polygon_fault(extrusion.points, smallest_size)) {
     context.report(Code::geometry_profile, where, {*fault});
     return {};
   }
   return prism(polygon, {0, 0, extrusion.height}, map);
+}
+
+OptionalSolid primitive_solid(const eval::RevolutionShape& revolution, const Affine& map, ElementId where,
+                              const SolidContext& context) {
+  std::vector<Vec3> polygon;
+  for (const auto& [r, z] : revolution.points) {
+    if (!positions_hold({{r, 0, z}}, where, context)) return {};
+    if (r != 0 && !sizes_hold({{"a distance from the axis, unless it is 0,", r}}, where, context)) return {};
+    polygon.push_back({r, 0, z});
+  }
+  if (const auto fault = polygon_fault(revolution.points, smallest_size)) {
+    context.report(Code::geometry_profile, where, {*fault});
+    return {};
+  }
+  return mapped(outward(BRepPrimAPI_MakeRevol(plane_face(polygon), gp_Ax1(gp::Origin(), gp::DZ())).Shape()), map);
 }
 
 }  // namespace meso::brep

@@ -44,7 +44,13 @@ using OptionalSolid = std::optional<TopoDS_Shape>;
                                             const SolidContext& context);
 [[nodiscard]] OptionalSolid primitive_solid(const eval::ExtrusionShape& extrusion, const Affine& map, ElementId where,
                                             const SolidContext& context);
+[[nodiscard]] OptionalSolid primitive_solid(const eval::RevolutionShape& revolution, const Affine& map, ElementId where,
+                                            const SolidContext& context);
 [[nodiscard]] OptionalSolid primitive_solid(const eval::VolumeElementShape& element, const Affine& map, ElementId where,
                                             const SolidContext& context);
+
+/// One solid for each outer shell, with the cavities in it.
+[[nodiscard]] std::optional<Solids> polyhedron_solids(const eval::PolyhedronShape& shape, const Affine& map,
+                                                      ElementId where, const SolidContext& context);
 
 }  // namespace meso::brep

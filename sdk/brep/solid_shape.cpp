@@ -22,6 +22,9 @@ class Builder {
     if (!solid) return {};
     return Solids{*solid};
   }
+  Result operator()(const eval::PolyhedronShape& polyhedron) const {
+    return polyhedron_solids(polyhedron, map_, where_, context_);
+  }
   Result operator()(const eval::ImportShape& import) const { return import_solids(import, map_, where_, context_); }
   Result operator()(const eval::BeamsShape& beams) const {
     const Result primitives = beam_primitives(beams, map_, where_, context_);

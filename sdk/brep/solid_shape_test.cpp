@@ -87,6 +87,65 @@ TEST_F(SolidFromShape, ExtrusionOfEitherSense) {
   expect_relative(volume({l}), 10);
 }
 
+TEST_F(SolidFromShape, RevolutionOfEitherSense) {
+  RevolutionShape ring{
+      {{1, -1}, {4, -1}, {4, 1}, {2, 1}, {2, 3}, {1, 3}}};  // Pappus: 2 pi times each rectangle's moment
+  expect_relative(volume({ring}), 2 * pi * (15 + 3));
+  expect_relative(area({ring}), 2 * pi * (15 / 2.0 + 4 * 2 + 6 + 2 * 2 + 3 / 2.0 + 4));
+  std::reverse(ring.points.begin(), ring.points.end());
+  expect_relative(volume({ring}), 2 * pi * (15 + 3));
+  // A cone on a cylinder: the side on the axis makes no face.
+  const RevolutionShape pencil{{{0, 0}, {2, 0}, {2, 5}, {0, 8}}};
+  expect_relative(volume({pencil}), pi * 4 * 5 + pi * 4);
+  std::size_t faces = 0;
+  for (TopExp_Explorer f(solids({pencil})->front(), TopAbs_FACE); f.More(); f.Next()) ++faces;
+  EXPECT_EQ(faces, 3u);
+  // A spindle that meets the axis in two points, stretched to an elliptic one.
+  const Affine stretched{Mat3::from_columns({2, 0, 0}, {0, 1, 0}, {0, 0, 1}), {5, 5, 5}};
+  expect_relative(volume({RevolutionShape{{{0, -3}, {2, 0}, {0, 3}}}}), pi * 4 * 2);
+  expect_relative(volume({RevolutionShape{{{0, -3}, {2, 0}, {0, 3}}}}, stretched), 2 * pi * 4 * 2);
+}
+
+TEST_F(SolidFromShape, RevolutionTooCloseToItsAxisIsRefused) {
+  EXPECT_FALSE(solids({RevolutionShape{{{1e-7, 0}, {2, 0}, {0, 3}}}}));
+  expect_code(Code::geometry_size);
+}
+
+Polyhedron block(Vec3 corner, Vec3 size) {
+  Polyhedron p;
+  for (const double z : {0.0, size.z})
+    for (const auto& [x, y] : {std::pair{0.0, 0.0}, {size.x, 0.0}, {size.x, size.y}, {0.0, size.y}})
+      p.vertices.push_back(corner + Vec3{x, y, z});
+  p.faces = {{0, 3, 2, 1}, {4, 5, 6, 7}, {0, 1, 5, 4}, {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}};
+  return p;
+}
+
+TEST_F(SolidFromShape, PolyhedronWithACavityAndABodyInIt) {
+  Polyhedron p = block({0, 0, 0}, {6, 6, 6});
+  const auto add = [&](Polyhedron other, bool turned) {
+    for (auto& face : other.faces) {
+      for (std::size_t& v : face) v += p.vertices.size();
+      if (turned) std::reverse(face.begin(), face.end());
+      p.faces.push_back(face);
+    }
+    p.vertices.insert(p.vertices.end(), other.vertices.begin(), other.vertices.end());
+  };
+  add(block({1, 1, 1}, {4, 4, 4}), true);
+  add(block({2, 2, 2}, {1, 2, 1}), false);
+  ASSERT_FALSE(polyhedron_fault(p));
+  expect_relative(volume({PolyhedronShape{p}}), 216 - 64 + 2);
+  EXPECT_EQ(solids({PolyhedronShape{p}})->size(), 2u);
+  const Affine mirrored{Mat3::from_columns({-1, 0, 0}, {0.5, 2, 0}, {0, 0, 1}), {1, 2, 3}};
+  expect_relative(volume({PolyhedronShape{p}}, mirrored), 2 * (216 - 64 + 2));
+}
+
+TEST_F(SolidFromShape, PolyhedronWithFacesThatAreNearlyPlane) {
+  Polyhedron p = block({0, 0, 0}, {3, 3, 3});
+  p.vertices[6].z += 3e-6;
+  ASSERT_FALSE(polyhedron_fault(p));
+  expect_relative(volume({PolyhedronShape{p}}), 27);
+}
+
 TEST_F(SolidFromShape, ExtrusionThatCrossesItselfIsRefused) {
   EXPECT_FALSE(solids({ExtrusionShape{.height = 1, .points = {{0, 0}, {1, 1}, {1, 0}, {0, 1}}}}));
   expect_code(Code::geometry_profile);

@@ -22,7 +22,8 @@ constexpr Format formats[] = {
 #endif
 #ifdef MESO_CLI_BREP
     {".step", "STEP AP214 (also .stp)", true, true, "exact; imported by documents, written by convert"},
-    {".brep", "OpenCASCADE B-rep", false, true, "exact"},
+    {".brep", "OpenCASCADE B-rep, text", true, true, "exact; imported by documents, written by convert"},
+    {".iges", "IGES 5.3 (also .igs)", true, false, "exact; imported by documents"},
     {".stl", "STL, binary or --ascii", true, true, "triangles; imported by documents as a faceted solid"},
 #elif defined(MESO_CLI_IMPLICIT)
     {".stl", "STL, binary or --ascii", true, true, "triangles, read and written by sdf"},

@@ -58,7 +58,7 @@ class BeamsMaker {
   bool make_struts() {
     for (const Beam& beam : beams_.beams) {
       const std::size_t from = node_position_.at(beam.from.text), to = node_position_.at(beam.to.text);
-      if (norm(shape_.nodes[to].position - shape_.nodes[from].position) == 0) {
+      if (norm(shape_.nodes[to].position - shape_.nodes[from].position) <= (rules_.position ? same_point : 0)) {
         report_(Code::body_degenerate, {beam.id_in_source, {}}, {"its two ends are one point"});
         return false;
       }
@@ -87,27 +87,44 @@ class BeamsMaker {
   struct Leaving {
     Vec3 direction;
     double radius = 0, widening = 0;
+    std::size_t from = 0, to = 0;  ///< nodes
   };
+
+  /// For each node the first that stands where it does: a mapping may put several on a pole or an axis.
+  std::vector<std::size_t> first_nodes() const {
+    std::vector<std::size_t> first(shape_.nodes.size());
+    for (std::size_t n = 0; n < first.size(); ++n) {
+      first[n] = n;
+      for (std::size_t m = 0; rules_.position && m < n && first[n] == n; ++m)
+        if (norm(shape_.nodes[m].position - shape_.nodes[n].position) <= same_point) first[n] = m;
+    }
+    return first;
+  }
 
   // Cones of radius r at a node, that grow by k per length away from it and whose axes meet at the angle
   // theta, have left each other at the distance r / (sin(theta / 2) - k cos(theta / 2)).
   bool make_automatic_balls() {
+    const std::vector<std::size_t> first = first_nodes();
     std::vector<std::vector<Leaving>> leaving(shape_.nodes.size());
     for (const Strut& s : shape_.struts) {
       const Vec3 way = shape_.nodes[s.to].position - shape_.nodes[s.from].position;
       const double length = norm(way), growth = (s.radius_to - s.radius_from) / length;
-      leaving[s.from].push_back({way / length, s.radius_from, std::max(0.0, growth)});
-      leaving[s.to].push_back({-way / length, s.radius_to, std::max(0.0, -growth)});
+      leaving[first[s.from]].push_back({way / length, s.radius_from, std::max(0.0, growth), s.from, s.to});
+      leaving[first[s.to]].push_back({-way / length, s.radius_to, std::max(0.0, -growth), s.to, s.from});
     }
     for (std::size_t n = 0; n < leaving.size(); ++n) {
       if (leaving[n].empty() || beams_.nodes[n].radius) continue;
       double& radius = shape_.nodes[n].ball_radius;
-      const std::vector<Vec3> beyond = directions_beyond(n);
+      std::vector<Vec3> beyond;
+      for (std::size_t m = n; m < first.size(); ++m)
+        if (first[m] == n) append_directions_beyond(m, beyond);
       for (std::size_t i = 0; i < leaving[n].size(); ++i) {
         const Leaving& strut = leaving[n][i];
         radius = std::max(radius, strut.radius);
         for (std::size_t j = 0; j < i; ++j) {
           const Leaving& other = leaving[n][j];
+          const bool is_written_twice = strut.from == other.from && strut.to == other.to;
+          if (first[strut.to] == first[other.to] && !is_written_twice) continue;  // the mapping makes them one
           const Leaving larger{strut.direction, std::max(strut.radius, other.radius),
                                std::max(strut.widening, other.widening)};
           if (!part_at(n, larger, other.direction, radius)) return false;
@@ -118,6 +135,8 @@ class BeamsMaker {
             return false;
       }
     }
+    for (std::size_t n = 0; n < first.size(); ++n)
+      if (!beams_.nodes[n].radius) shape_.nodes[n].ball_radius = shape_.nodes[first[n]].ball_radius;
     return true;
   }
 
@@ -140,9 +159,8 @@ class BeamsMaker {
 
   /// Where the struts of neighbouring cells leave a node in a wall of the box, if those are like this one. Their radii
   /// do not matter: they make balls of their own.
-  [[nodiscard]] std::vector<Vec3> directions_beyond(std::size_t node) const {
-    std::vector<Vec3> directions;
-    if (!rules_.period) return directions;
+  void append_directions_beyond(std::size_t node, std::vector<Vec3>& directions) const {
+    if (!rules_.period) return;
     const Vec3 size = rules_.period->size / data_.millimeters();
     for (std::size_t other = 0; other < unplaced_.size(); ++other) {
       Vec3 shift;
@@ -160,13 +178,13 @@ class BeamsMaker {
           Vec3 end = unplaced_[far] + shift;
           if (rules_.position) end = rules_.position(end);
           const Vec3 way = data_.millimeters() * end - shape_.nodes[node].position;
-          if (norm(way) > 0) directions.push_back(way / norm(way));
+          if (norm(way) > same_point) directions.push_back(way / norm(way));
         }
     }
-    return directions;
   }
 
   static constexpr double smallest_sine = 1e-6;
+  static constexpr double same_point = 1e-6;  ///< millimetres
 
   const EvaluationData& data_;
   const BodyTable& table_;

@@ -11,6 +11,28 @@
 namespace meso::eval {
 namespace {
 
+/// Corners that fall together are one, and what is left of a face that has fewer than three is none.
+PolyhedronShape wedge(Vec3 bottom, double dx, double dy, Vec3 top, double top_dx, double top_dy) {
+  const Vec3 corners[] = {bottom, bottom + Vec3{dx, 0, 0},  bottom + Vec3{dx, dy, 0},      bottom + Vec3{0, dy, 0},
+                          top,    top + Vec3{top_dx, 0, 0}, top + Vec3{top_dx, top_dy, 0}, top + Vec3{0, top_dy, 0}};
+  static constexpr std::size_t sides[][4] = {{0, 3, 2, 1}, {4, 5, 6, 7}, {0, 1, 5, 4},
+                                             {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}};
+  Polyhedron body;
+  std::array<std::size_t, 8> place{};
+  for (std::size_t i = 0; i < 8; ++i) {
+    const auto found = std::find(body.vertices.begin(), body.vertices.end(), corners[i]);
+    place[i] = static_cast<std::size_t>(found - body.vertices.begin());
+    if (found == body.vertices.end()) body.vertices.push_back(corners[i]);
+  }
+  for (const auto& side : sides) {
+    std::vector<std::size_t> face;
+    for (const std::size_t i : side)
+      if (std::find(face.begin(), face.end(), place[i]) == face.end()) face.push_back(place[i]);
+    if (face.size() > 2) body.faces.push_back(std::move(face));
+  }
+  return {std::move(body)};
+}
+
 class ShapeMaker {
  public:
   explicit ShapeMaker(BodyReader& read) : read_(read) {}
@@ -111,6 +133,14 @@ class ShapeMaker {
     need_volume(doubled_area != 0, e, "its profile has no area");
     return shape;
   }
+  Value make_node(const WedgePrimitive& e) {
+    const Vec3 size{read_.positive_length(e.dx), read_.positive_length(e.dy), read_.positive_length(e.dz)};
+    const Vec3 bottom = point(e.x, e.y, e.z), top = bottom + Vec3{read_.length(e.top_x), read_.length(e.top_y), size.z};
+    return wedge(bottom, size.x, size.y, top, e.top_dx ? read_.length_not_negative(*e.top_dx) : size.x,
+                 e.top_dy ? read_.length_not_negative(*e.top_dy) : size.y);
+  }
+  Value make_node(const RevolutionPrimitive& e);
+  Value make_node(const PolyhedronPrimitive& e);
   Value make_node(const VolumeElementPrimitive& e);
   template <BooleanOperation Operation>
   Value make_node(const CsgBoolean<Operation>& e) {
@@ -139,6 +169,24 @@ class ShapeMaker {
 
   BodyReader& read_;
 };
+
+ShapeMaker::Value ShapeMaker::make_node(const RevolutionPrimitive& e) {
+  RevolutionShape shape;
+  for (const MeridianPoint& p : e.points) shape.points.emplace_back(read_.length_not_negative(p.r), read_.length(p.z));
+  if (const auto fault = polygon_fault(shape.points, 0))
+    read_.fail(Code::revolution_profile, {e.id_in_source, {}}, {*fault});
+  return shape;
+}
+
+ShapeMaker::Value ShapeMaker::make_node(const PolyhedronPrimitive& e) {
+  Polyhedron body;
+  for (const PolyhedronVertex& v : e.vertices) body.vertices.push_back(point(v.x, v.y, v.z));
+  for (const PolyhedronFace& face : e.faces) body.faces.push_back(read_.indices(face.vertices));
+  if (!read_.ok()) return {};
+  if (auto fault = polyhedron_fault(body))
+    read_.fail(fault->code, {e.faces[fault->face].id_in_source, "vertices"}, std::move(fault->args));
+  return PolyhedronShape{std::move(body)};
+}
 
 ShapeMaker::Value ShapeMaker::make_node(const VolumeElementPrimitive& e) {
   VolumeElementShape shape;

@@ -7,6 +7,7 @@
 
 #include "body.hpp"
 #include "meso/base/number.hpp"
+#include "meso/expr/operations.hpp"
 
 namespace meso::eval {
 
@@ -43,6 +44,20 @@ class BodyReader {
     const double value = number(e);
     if (value < 0) fail(Code::value_negative, place(e), {std::string(place(e).attribute), format_number(value)});
     return data_.millimeters() * value;
+  }
+  /// Whole numbers from 0 (R-7.5.3 decides what is one).
+  [[nodiscard]] std::vector<std::size_t> indices(const ExpressionList& list) {
+    std::vector<std::size_t> result;
+    for (const BoundExpression& item : table_.at(list)) {
+      const auto value = ok_ ? evaluate(item, slots_, report_) : std::nullopt;
+      ok_ = value.has_value();
+      const double n = expr::snap_to_integer(value.value_or(0));
+      if (!(n == std::round(n) && n >= 0 && n <= 0x1p53))
+        fail(Code::value_not_whole, item.place, {"vertices", "0", format_number(n)});
+      else
+        result.push_back(static_cast<std::size_t>(n));
+    }
+    return result;
   }
   /// A 3x4 matrix in millimetres whose determinant keeps the rule of `mirror`.
   [[nodiscard]] Affine affine(const ExpressionList& list, bool mirror) {

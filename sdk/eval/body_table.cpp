@@ -39,7 +39,8 @@ class ExpressionCollector {
     if (bound) bound_[&value] = {std::move(*bound)};
   }
   void attribute(std::string_view name, const ExpressionList& value) {
-    auto bound = scope_.bind_list(value.text, {element_, name}, matrix_entries, unit_, report_);
+    const std::size_t count = name == "matrix" ? matrix_entries : expr::split_list(value.text).size();
+    auto bound = scope_.bind_list(value.text, {element_, name}, count, unit_, report_);
     ok_ = ok_ && bound.has_value();
     if (bound) bound_[&value] = std::move(*bound);
   }

@@ -50,6 +50,20 @@ Box3 bounds_of(const ExtrusionShape& s) {
   return box;
 }
 
+Box3 bounds_of(const RevolutionShape& s) {
+  Box3 box;
+  for (const auto& [r, z] : s.points) {
+    box.extend({-r, -r, z});
+    box.extend({r, r, z});
+  }
+  return box;
+}
+Box3 bounds_of(const PolyhedronShape& s) {
+  Box3 box;
+  for (const Vec3 p : s.body.vertices) box.extend(p);
+  return box;
+}
+
 /// P moves by at most |dq| per linear or distance coordinate, and by the arm's length times the angle per circular one.
 Box3 bounds_of(const VolumeElementShape& s) {
   const auto& axes = s.system->axes();

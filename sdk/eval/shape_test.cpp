@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include <numbers>
+#include <numeric>
 
 #include "document_text.hpp"
 #include "meso/eval/bounds.hpp"
@@ -59,6 +60,48 @@ TEST(Csg, RangesAreCheckedAfterEvaluation) {
               ElementsAre("BODY_DEGENERATE in cell (1) of pattern 'p'"));
   EXPECT_THAT(faults("<transform matrix='r,0,0,0, 0,1,0,0, 0,0,1,0'><sphere radius='1'/></transform>"),
               ElementsAre("TRANSFORM_DETERMINANT in cell (1) of pattern 'p'"));
+}
+
+TEST(Csg, WedgesArePolyhedra) {
+  const auto wedge = [](const std::string& top) {
+    const Shape s =
+        shape_of(pattern_text(three, "<csg><wedge x='1' y='2' z='3' dx='6' dy='4' dz='3' " + top + "/></csg>"));
+    Polyhedron body = std::get<PolyhedronShape>(s.value).body;
+    EXPECT_FALSE(polyhedron_fault(body)) << top;
+    std::vector<std::size_t> faces(body.faces.size());
+    std::iota(faces.begin(), faces.end(), std::size_t{0});
+    return std::pair{faces.size(), volume_of(body, faces)};  // h (A + 4 M + B) / 6
+  };
+  EXPECT_EQ(wedge(""), (std::pair{std::size_t{6}, 72.0}));
+  EXPECT_EQ(wedge("topX='1' topY='2' topDx='2' topDy='1'"), (std::pair{std::size_t{6}, 3 * (24 + 4 * 10 + 2) / 6.0}));
+  EXPECT_EQ(wedge("topX='2' topY='2' topDx='2' topDy='0'"), (std::pair{std::size_t{5}, 3 * (24 + 4 * 8) / 6.0}));
+  EXPECT_EQ(wedge("topDx='0' topDy='0'"), (std::pair{std::size_t{5}, 24.0}));
+  EXPECT_EQ(wedge("topDx='0'"), (std::pair{std::size_t{5}, 36.0}));
+}
+
+TEST(Csg, ProfilesAndPolyhedraAreCheckedAfterEvaluation) {
+  const auto faults = [](const std::string& body) {
+    return faults_of(pattern_text(three, "<parameter id='r' value='2 - i'/><csg>" + body + "</csg>"));
+  };
+  EXPECT_THAT(faults("<revolution><point r='0' z='0'/><point r='r - 1' z='0'/><point r='0' z='1'/></revolution>"),
+              ElementsAre("REVOLUTION_PROFILE in cell (1) of pattern 'p'"));
+  EXPECT_THAT(faults("<revolution><point r='0' z='0'/><point r='2*r-1' z='0'/><point r='0' z='1'/></revolution>"),
+              ElementsAre("VALUE_NEGATIVE in cell (2) of pattern 'p'"));
+  const auto tetrahedron = [](const std::string& height) {
+    return "<polyhedron><vertex x='0' y='0' z='0'/><vertex x='1' y='0' z='0'/><vertex x='0' y='1' z='0'/><vertex x='0' "
+           "y='0' z='" +
+           height +
+           "'/><face vertices='0, 2, 1'/><face vertices='0, 1, 3'/><face vertices='1, 2, 3'/>"
+           "<face vertices='2, 0, 3'/></polyhedron>";
+  };
+  EXPECT_THAT(faults(tetrahedron("r")), ElementsAre("POLYHEDRON_FACE in cell (2) of pattern 'p'"));
+  EXPECT_THAT(faults(tetrahedron("r + 1")), testing::IsEmpty());
+  EXPECT_THAT(faults(tetrahedron("r - 1.5")), ElementsAre("POLYHEDRON_INSIDE_OUT in cell (1) of pattern 'p'"));
+}
+
+TEST(Bounds, OfRevolutionsAndPolyhedra) {
+  EXPECT_EQ(bounds(Shape{RevolutionShape{{{0, -3}, {2, 0}, {0, 3}}}}), (Box3{{-2, -2, -3}, {2, 2, 3}}));
+  EXPECT_EQ(bounds(Shape{PolyhedronShape{{{{0, 1, 2}, {5, -1, 0}}, {}}}}), (Box3{{0, -1, 0}, {5, 1, 2}}));
 }
 
 const std::string cross_nodes = R"(<node id="o" x="0" y="0" z="0"/><node id="a" x="3" y="0" z="0"/>

@@ -15,6 +15,17 @@ bool in_cap(BeamCap cap, Vec3 end, Vec3 outwards, double radius, Vec3 p) {
   return in_ball(end, radius, p) && (cap == BeamCap::sphere || dot(p - end, outwards) >= 0);
 }
 
+/// An odd number of sides crosses the ray to the right.
+bool in_corners(const std::vector<std::pair<double, double>>& corners, double x, double y) {
+  bool odd = false;
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    const auto [ax, ay] = corners[i];
+    const auto [bx, by] = corners[(i + 1) % corners.size()];
+    if ((ay > y) != (by > y) && x < ax + (y - ay) * (bx - ax) / (by - ay)) odd = !odd;
+  }
+  return odd;
+}
+
 }  // namespace
 
 bool contains(const eval::BoxShape& box, Vec3 p) {
@@ -48,12 +59,30 @@ bool contains(const eval::TorusShape& torus, Vec3 p) {
 }
 
 bool contains(const eval::ExtrusionShape& extrusion, Vec3 p) {
-  if (p.z < extrusion.z || p.z > extrusion.z + extrusion.height) return false;
+  return p.z >= extrusion.z && p.z <= extrusion.z + extrusion.height && in_corners(extrusion.points, p.x, p.y);
+}
+
+bool contains(const eval::RevolutionShape& revolution, Vec3 p) {
+  return in_corners(revolution.points, std::hypot(p.x, p.y), p.z);
+}
+
+/// The ray along +z leaves through one face more than it enters by. Faces with a common edge see the same corners from
+/// above, so no ray passes between them.
+bool contains(const eval::PolyhedronShape& polyhedron, Vec3 p) {
+  const auto& vertices = polyhedron.body.vertices;
   bool odd = false;
-  for (std::size_t i = 0; i < extrusion.points.size(); ++i) {
-    const auto [ax, ay] = extrusion.points[i];
-    const auto [bx, by] = extrusion.points[(i + 1) % extrusion.points.size()];
-    if ((ay > p.y) != (by > p.y) && p.x < ax + (p.y - ay) * (bx - ax) / (by - ay)) odd = !odd;
+  std::vector<std::pair<double, double>> corners;
+  for (const auto& face : polyhedron.body.faces) {
+    corners.clear();
+    Vec3 normal;
+    for (std::size_t i = 0; i < face.size(); ++i) {
+      const Vec3 a = vertices[face[i]] - p, b = vertices[face[(i + 1) % face.size()]] - p;
+      normal += cross(a, b);
+      corners.emplace_back(a.x, a.y);
+    }
+    if (normal.z == 0 || !in_corners(corners, 0, 0)) continue;
+    const Vec3 a = vertices[face.front()] - p;
+    if (dot(normal, a) / normal.z > 0) odd = !odd;  // the height of the face's plane above p
   }
   return odd;
 }

@@ -14,6 +14,8 @@ namespace meso::membership {
 [[nodiscard]] bool contains(const eval::ConeShape& cone, Vec3 p);
 [[nodiscard]] bool contains(const eval::TorusShape& torus, Vec3 p);
 [[nodiscard]] bool contains(const eval::ExtrusionShape& extrusion, Vec3 p);
+[[nodiscard]] bool contains(const eval::RevolutionShape& revolution, Vec3 p);
+[[nodiscard]] bool contains(const eval::PolyhedronShape& polyhedron, Vec3 p);
 [[nodiscard]] bool contains(const eval::BeamsShape& beams, Vec3 p);
 
 /// By solving P(q) = p for the element's three coordinates; unknown where the system's axes allow no solution in

@@ -35,6 +35,37 @@ TEST(Solids, HaveTheVolumesOfTheirFormulas) {
   expect_volume({ConeShape{{0, 0, -3}, {0, 0, 3}, 2, 1}}, pi * 6 / 3 * (4 + 2 + 1));
   expect_volume({TorusShape{{0, 0, 0}, Vec3{1, 2, 2} / 3, 3, 1}}, 2 * pi * pi * 3);
   expect_volume({ExtrusionShape{-1, 3, {{0, 0}, {4, 0}, {4, 1}, {1, 1}, {1, 4}, {0, 4}}}}, 3 * 7);
+  expect_volume({RevolutionShape{{{1, -1}, {4, -1}, {4, 1}, {2, 1}, {2, 3}, {1, 3}}}}, 2 * pi * (15 + 3));
+  expect_volume({RevolutionShape{{{0, -3}, {2, 0}, {0, 3}}}}, pi * 4 * 6 / 3);
+}
+
+TEST(Solids, Polyhedra) {
+  // The box from -3 to 3 without the tetrahedron whose corners are the origin and 2 along each axis.
+  Polyhedron p{.vertices = {{-3, -3, -3},
+                            {3, -3, -3},
+                            {3, 3, -3},
+                            {-3, 3, -3},
+                            {-3, -3, 3},
+                            {3, -3, 3},
+                            {3, 3, 3},
+                            {-3, 3, 3},
+                            {0, 0, 0},
+                            {2, 0, 0},
+                            {0, 2, 0},
+                            {0, 0, 2}},
+               .faces = {{0, 3, 2, 1},
+                         {4, 5, 6, 7},
+                         {0, 1, 5, 4},
+                         {1, 2, 6, 5},
+                         {2, 3, 7, 6},
+                         {3, 0, 4, 7},
+                         {8, 9, 10},
+                         {8, 10, 11},
+                         {8, 11, 9},
+                         {9, 11, 10}}};
+  expect_volume({PolyhedronShape{p}}, 216 - 8.0 / 6);
+  EXPECT_FALSE(contains(PolyhedronShape{p}, {0.5, 0.5, 0.5}));
+  EXPECT_TRUE(contains(PolyhedronShape{p}, {0.9, 0.9, 0.9}));
 }
 
 TEST(Solids, Booleans) {

@@ -44,7 +44,7 @@ std::optional<TriangleMesh> ImportedBodies::triangles(const eval::ImportShape& i
   if (!body) return {};
   if (!has_flat_faces_only(*body)) {
     const brep::Measures m = brep::measure(*body);
-    const double scale = std::cbrt(std::abs(determinant(import.transform.linear))),
+    const double scale = import.scale * std::cbrt(std::abs(determinant(import.transform.linear))),
                  error = relative_deflection * norm(m.box.max - m.box.min);
     error_mm_ = std::max(error_mm_, scale * error);
     error_mm3_ += scale * scale * scale * error * m.area;

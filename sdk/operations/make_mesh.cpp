@@ -32,8 +32,7 @@ namespace {
 constexpr double import_deflection = 1e-4, import_angle = 0.1;
 
 std::optional<TriangleMesh> import_mesh(const eval::ImportShape& import, const RunOptions& run, DiagnosticSink& sink) {
-  const std::string extension = lower_extension(import.file.name());
-  if (extension == ".step" || extension == ".stp") {
+  if (brep::is_exact_file(import.file.name())) {
     const auto body =
         brep::read_step(import.file, {.relative_deflection = import_deflection, .angle_rad = import_angle}, run, sink);
     return body ? std::optional(triangle_mesh(*body)) : std::nullopt;

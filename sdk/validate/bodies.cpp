@@ -6,8 +6,9 @@
 #include <numbers>
 
 #include "families.hpp"
-#include "meso/base/vec.hpp"
+#include "meso/base/polyhedron.hpp"
 #include "meso/expr/expression.hpp"
+#include "meso/expr/operations.hpp"
 #include "meso/model/walk.hpp"
 
 namespace meso {
@@ -50,6 +51,13 @@ class CsgCheck {
     else if (area(e) == 0.0)
       c_.report(Code::body_degenerate, e, "", {"the polygon has no area"});
   }
+  void operator()(const WedgePrimitive& e) {
+    positive(e, {{"dx", &e.dx}, {"dy", &e.dy}, {"dz", &e.dz}});
+    c_.require_not_negative(e, "topDx", e.top_dx);
+    c_.require_not_negative(e, "topDy", e.top_dy);
+  }
+  void operator()(const RevolutionPrimitive& e);
+  void operator()(const PolyhedronPrimitive& e);
   void operator()(const VolumeElementPrimitive& e);
   template <BooleanOperation O>
   void operator()(const CsgBoolean<O>& e) {
@@ -89,23 +97,74 @@ class CsgCheck {
     if (ends[0] == ends[3] && ends[1] == ends[4] && ends[2] == ends[5])
       c_.report(Code::body_degenerate, e, "", {"both ends are the same point"});
   }
-  /// Twice the signed area, if all points are constant.
+  /// If all points are constant.
   [[nodiscard]] std::optional<double> area(const ExtrusionPrimitive& e) const {
-    std::vector<Vec3> points;
+    std::vector<Point2> points;
     for (const ProfilePoint& p : e.points) {
       const auto x = c_.constant(p.x), y = c_.constant(p.y);
       if (!x || !y) return std::nullopt;
-      points.push_back({*x, *y, 0});
+      points.emplace_back(*x, *y);
     }
-    double sum = 0;
-    for (std::size_t i = 1; i + 1 < points.size(); ++i)
-      sum += cross(points[i] - points[0], points[i + 1] - points[0]).z;
-    return sum;
+    return polygon_area(points);
   }
+  /// If it is constant and names corners by whole numbers, else reported.
+  std::optional<std::vector<std::size_t>> corners(const PolyhedronFace& face);
 
   Context& c_;
   const Scope& scope_;
 };
+
+void CsgCheck::operator()(const RevolutionPrimitive& e) {
+  if (e.points.size() < 3) {
+    c_.report(Code::content_needed, e, "", {"revolution", "at least three <point>", std::to_string(e.points.size())});
+    return;
+  }
+  std::vector<Point2> points;
+  for (const MeridianPoint& p : e.points) {
+    c_.require_not_negative(p, "r", p.r);
+    const auto r = c_.constant(p.r), z = c_.constant(p.z);
+    if (r && z) points.emplace_back(*r, *z);
+  }
+  if (points.size() < e.points.size()) return;
+  if (const auto fault = polygon_fault(points, 0)) c_.report(Code::revolution_profile, e, "", {*fault});
+}
+
+std::optional<std::vector<std::size_t>> CsgCheck::corners(const PolyhedronFace& face) {
+  if (!c_.check(face, "vertices", face.vertices, scope_)) return std::nullopt;
+  const auto values = c_.constants(face.vertices);
+  if (!values) {
+    c_.report(Code::polyhedron_index, face, "vertices", {"a corner by a value that differs from cell to cell"});
+    return std::nullopt;
+  }
+  std::vector<std::size_t> indices;
+  for (const double value : *values) {
+    const double n = expr::snap_to_integer(value);
+    if (n == std::round(n) && n >= 0 && n <= 0x1p53) indices.push_back(static_cast<std::size_t>(n));
+  }
+  if (indices.size() == values->size()) return indices;
+  require_whole(c_, face, "vertices", face.vertices, 0);
+  return std::nullopt;
+}
+
+void CsgCheck::operator()(const PolyhedronPrimitive& e) {
+  const auto least_four = [&](std::string_view what, std::size_t count) {
+    if (count < 4)
+      c_.report(Code::content_needed, e, "",
+                {"polyhedron", "at least four <" + std::string(what) + ">", std::to_string(count)});
+    return count >= 4;
+  };
+  if (!least_four("vertex", e.vertices.size()) || !least_four("face", e.faces.size())) return;
+  Polyhedron body;
+  for (const PolyhedronVertex& v : e.vertices) {
+    const auto x = c_.constant(v.x), y = c_.constant(v.y), z = c_.constant(v.z);
+    if (x && y && z) body.vertices.push_back({*x, *y, *z});
+  }
+  for (const PolyhedronFace& face : e.faces)
+    if (auto indices = corners(face)) body.faces.push_back(std::move(*indices));
+  if (body.vertices.size() < e.vertices.size() || body.faces.size() < e.faces.size()) return;
+  if (auto fault = polyhedron_fault(body))
+    c_.report(fault->code, e.faces[fault->face], "vertices", std::move(fault->args));
+}
 
 void CsgCheck::operator()(const VolumeElementPrimitive& e) {
   if (e.ranges.size() != 3)
@@ -135,14 +194,15 @@ void CsgCheck::operator()(const VolumeElementPrimitive& e) {
 enum class UnitRule { needed, refused };
 
 std::optional<UnitRule> unit_rule(std::string_view extension) {
-  static constexpr std::array<std::pair<std::string_view, UnitRule>, 8> table{{{"step", UnitRule::refused},
+  static constexpr std::array<std::pair<std::string_view, UnitRule>, 9> table{{{"step", UnitRule::refused},
                                                                                {"stp", UnitRule::refused},
                                                                                {"iges", UnitRule::refused},
                                                                                {"igs", UnitRule::refused},
                                                                                {"stl", UnitRule::needed},
                                                                                {"obj", UnitRule::needed},
                                                                                {"ply", UnitRule::needed},
-                                                                               {"off", UnitRule::needed}}};
+                                                                               {"off", UnitRule::needed},
+                                                                               {"brep", UnitRule::needed}}};
   for (const auto& [known, rule] : table)
     if (known == extension) return rule;
   return std::nullopt;

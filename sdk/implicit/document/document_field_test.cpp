@@ -68,6 +68,12 @@ const char* const every_body =
     "<intersection><box x='-3' dx='2' dy='2' dz='2'/><sphere x='-2' y='1' z='1' radius='1.3'/></intersection>"
     "<extrusion z='4' height='1'><point x='0' y='0'/><point x='3' y='0'/><point x='1' y='1'/><point x='0' "
     "y='3'/></extrusion>"
+    "<wedge x='-6' y='-6' z='-2' dx='3' dy='2' dz='2' topX='0.5' topDx='0' topDy='1'/>"
+    "<translate x='-5' y='5'><revolution><point r='0' z='0'/><point r='2' z='0'/><point r='1' z='1'/>"
+    "<point r='1.5' z='2'/><point r='0' z='3'/></revolution></translate>"
+    "<polyhedron><vertex x='12' y='0' z='0'/><vertex x='16' y='0' z='0'/><vertex x='13' y='1' z='0'/>"
+    "<vertex x='12' y='4' z='0'/><vertex x='13' y='1' z='3'/><face vertices='3,2,1,0'/><face vertices='0,1,4'/>"
+    "<face vertices='1,2,4'/><face vertices='2,3,4'/><face vertices='3,0,4'/></polyhedron>"
     "<transform matrix='0,1,0,10, 1,0.3,0,0, 0,0,1,0' mirror='true'><box dx='1' dy='2' dz='1'/></transform></union>";
 
 TEST(DocumentField, EveryBodyOfATree) {

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "meso/eval/bounds.hpp"
+
 namespace meso::implicit {
 namespace {
 
@@ -30,8 +32,8 @@ Term least(std::vector<Term> terms) {
 }
 
 /// Negative inside: an odd number of sides crosses the ray to the right.
-Term polygons(std::span<const Side> sides) {
-  const Term x = Term::coordinate(0), y = Term::coordinate(1), zero = Term::constant(0), one = Term::constant(1);
+Term polygons(std::span<const Side> sides, const Term& x, const Term& y) {
+  const Term zero = Term::constant(0), one = Term::constant(1);
   std::vector<Term> squares, crossings;
   for (const Side& side : sides) {
     const auto [ax, ay] = side.from;
@@ -60,17 +62,33 @@ Field extrusion(std::span<const Side> sides, double z, double height) {
   for (const Side& side : sides) box.extend({side.from.first, side.from.second, 0});
   const Vec3 half{(box.max.x - box.min.x) / 2, (box.max.y - box.min.y) / 2, height / 2};
   const Vec3 middle{box.min.x + half.x, box.min.y + half.y, z + half.z};
-  const Field profile = Field::from_term(polygons(sides));
+  const Field profile = Field::from_term(polygons(sides, Term::coordinate(0), Term::coordinate(1)));
   const Field slab = intersection_of(Field::half_space({0, 0, 1}, z + height), Field::half_space({0, 0, -1}, -z));
   // The box holds the body and changes nothing but bounds().
   return intersection_of(intersection_of(profile, slab), Field::box(half).translated(middle));
 }
 
-Field extrusion(const eval::ExtrusionShape& shape) {
+namespace {
+
+std::vector<Side> sides_of(const std::vector<Point2>& corners) {
   std::vector<Side> sides;
-  for (std::size_t i = 0; i < shape.points.size(); ++i)
-    sides.push_back({shape.points[i], shape.points[(i + 1) % shape.points.size()]});
-  return extrusion(sides, shape.z, shape.height);
+  for (std::size_t i = 0; i < corners.size(); ++i) sides.push_back({corners[i], corners[(i + 1) % corners.size()]});
+  return sides;
+}
+
+}  // namespace
+
+Field extrusion(const eval::ExtrusionShape& shape) { return extrusion(sides_of(shape.points), shape.z, shape.height); }
+
+Field revolution(const eval::RevolutionShape& shape) {
+  std::vector<Side> sides = sides_of(shape.points);
+  // Sides on the axis bound nothing, and no point has a smaller r.
+  std::erase_if(sides, [](const Side& side) { return side.from.first == 0 && side.to.first == 0; });
+  const Term x = Term::coordinate(0), y = Term::coordinate(1);
+  const Box3 box = *eval::bounds(eval::Shape{shape});
+  const Field profile = Field::from_term(polygons(sides, sqrt(x * x + y * y), Term::coordinate(2)));
+  const Vec3 half = 0.5 * (box.max - box.min);
+  return intersection_of(profile, Field::box(half).translated(box.min + half));
 }
 
 }  // namespace meso::implicit

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// The distance to an extruded profile. Private.
+// The distance to a profile that is extruded or turned. Private.
 
 #include <span>
 #include <utility>
 
+#include "meso/base/polygon.hpp"
 #include "meso/eval/shape.hpp"
 #include "meso/implicit/field.hpp"
 
 namespace meso::implicit {
 
-using Point2 = std::pair<double, double>;
 struct Side {
   Point2 from, to;
   friend auto operator<=>(const Side&, const Side&) = default;
@@ -20,5 +20,7 @@ struct Side {
 /// the plane of the profile and along z.
 [[nodiscard]] Field extrusion(std::span<const Side> sides, double z, double height);
 [[nodiscard]] Field extrusion(const eval::ExtrusionShape& shape);
+/// Exact: what is nearest to a point stands in its half plane.
+[[nodiscard]] Field revolution(const eval::RevolutionShape& shape);
 
 }  // namespace meso::implicit

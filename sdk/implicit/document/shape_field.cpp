@@ -5,8 +5,10 @@
 
 #include "affine_map.hpp"
 #include "far_from_mesh.hpp"
+#include "meso/eval/bounds.hpp"
 #include "meso/mesh_distance/mesh_field.hpp"
 #include "polygon_term.hpp"
+#include "polyhedron_field.hpp"
 #include "prism.hpp"
 #include "volume_element.hpp"
 
@@ -35,6 +37,13 @@ struct ShapeFields::Maker {
 
   using Result = std::optional<Field>;
 
+  template <class S>
+  void see_bounds(const S& s) const {
+    const Box3 box = *eval::bounds(eval::Shape{s});
+    const Vec3 size = box.max - box.min;
+    self.see(std::min({size.x, size.y, size.z}));
+  }
+
   Result operator()(const eval::BoxShape& s) const {
     self.see(std::min({s.size.x, s.size.y, s.size.z}));
     return Field::box(0.5 * s.size).translated(s.corner + 0.5 * s.size);
@@ -61,6 +70,14 @@ struct ShapeFields::Maker {
   Result operator()(const eval::ExtrusionShape& s) const {
     self.see(s.height);
     return extrusion(s);
+  }
+  Result operator()(const eval::RevolutionShape& s) const {
+    see_bounds(s);
+    return revolution(s);
+  }
+  Result operator()(const eval::PolyhedronShape& s) const {
+    see_bounds(s);
+    return polyhedron_field(s.body, self.options_.run, self.report_.sink());
   }
   Result operator()(const eval::VolumeElementShape& s) const {
     self.see(shortest_edge_of(s));

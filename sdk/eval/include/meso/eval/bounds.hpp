@@ -4,8 +4,9 @@
 //
 //   bounds(Shape{SphereShape{{0, 0, 0}, 1}});  // [-1, 1]^3
 //
-// Contains the shape; exact for boxes, spheres, ellipsoids, tori and extrusions, else a little too large. Nothing for
-// what only an engine knows: imports, parts, implicit bodies. Millimetres; linear in the size of the shape.
+// Contains the shape; exact for boxes, spheres, ellipsoids, tori, extrusions, revolutions and polyhedra, else a little
+// too large. Nothing for what only an engine knows: imports, parts, implicit bodies. Millimetres; linear in the size of
+// the shape.
 
 #include <optional>
 

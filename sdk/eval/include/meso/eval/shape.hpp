@@ -9,6 +9,7 @@
 #include <variant>
 #include <vector>
 
+#include "meso/base/polyhedron.hpp"
 #include "meso/base/vec.hpp"
 #include "meso/eval/coordinates.hpp"
 #include "meso/model/document.hpp"
@@ -43,6 +44,14 @@ struct TorusShape {
 struct ExtrusionShape {
   double z = 0, height = 0;
   std::vector<std::pair<double, double>> points;
+};
+/// A simple polygon of (r, z), r >= 0, turned once about z.
+struct RevolutionShape {
+  std::vector<std::pair<double, double>> points;
+};
+/// Without fault: plane faces that enclose a volume, in one shell or more. Wedges are polyhedra, too.
+struct PolyhedronShape {
+  Polyhedron body;
 };
 /// All P(q) with q[axis] between from[axis] and to[axis] for three axes, 0 on the others.
 struct VolumeElementShape {
@@ -89,7 +98,8 @@ struct PartShape {
 
 struct Shape {
   std::variant<BoxShape, SphereShape, EllipsoidShape, CylinderShape, ConeShape, TorusShape, ExtrusionShape,
-               VolumeElementShape, ImportShape, BeamsShape, BooleanShape, TransformedShape, ImplicitShape, PartShape>
+               RevolutionShape, PolyhedronShape, VolumeElementShape, ImportShape, BeamsShape, BooleanShape,
+               TransformedShape, ImplicitShape, PartShape>
       value;
   ElementId source{};  ///< the element it comes from, for diagnostics
 };

@@ -33,6 +33,9 @@ MESO_ELEMENT(CylinderPrimitive, "cylinder");
 MESO_ELEMENT(ConePrimitive, "cone");
 MESO_ELEMENT(TorusPrimitive, "torus");
 MESO_ELEMENT(ExtrusionPrimitive, "extrusion");
+MESO_ELEMENT(WedgePrimitive, "wedge");
+MESO_ELEMENT(RevolutionPrimitive, "revolution");
+MESO_ELEMENT(PolyhedronPrimitive, "polyhedron");
 MESO_ELEMENT(VolumeElementPrimitive, "volumeElement");
 MESO_ELEMENT(CsgUnion, "union");
 MESO_ELEMENT(CsgIntersection, "intersection");
@@ -195,6 +198,37 @@ void describe(V& v, E& e) {
   v.attribute("z", e.z);
   v.attribute("height", e.height);
   v.children("point", e.points);
+}
+template <class V, Of<WedgePrimitive> E>
+void describe(V& v, E& e) {
+  describe_center(v, e);
+  describe_size(v, e);
+  v.attribute("topX", e.top_x);
+  v.attribute("topY", e.top_y);
+  v.attribute("topDx", e.top_dx);
+  v.attribute("topDy", e.top_dy);
+}
+template <class V, Of<MeridianPoint> E>
+void describe(V& v, E& e) {
+  v.attribute("r", e.r);
+  v.attribute("z", e.z);
+}
+template <class V, Of<RevolutionPrimitive> E>
+void describe(V& v, E& e) {
+  v.children("point", e.points);
+}
+template <class V, Of<PolyhedronVertex> E>
+void describe(V& v, E& e) {
+  describe_center(v, e);
+}
+template <class V, Of<PolyhedronFace> E>
+void describe(V& v, E& e) {
+  v.attribute("vertices", e.vertices);
+}
+template <class V, Of<PolyhedronPrimitive> E>
+void describe(V& v, E& e) {
+  v.children("vertex", e.vertices);
+  v.children("face", e.faces);
 }
 template <class V, Of<AxisRange> E>
 void describe(V& v, E& e) {

@@ -65,6 +65,37 @@ struct ExtrusionPrimitive : Element {
   std::vector<ProfilePoint> points;  ///< >= 3, either sense
   friend bool operator==(const ExtrusionPrimitive&, const ExtrusionPrimitive&) = default;
 };
+/// A box whose top, at z + dz, is another rectangle along the axes.
+struct WedgePrimitive : Element {
+  std::optional<Expression> x, y, z;         ///< corner, 0
+  Expression dx, dy, dz;                     ///< size of the bottom and height, > 0
+  std::optional<Expression> top_x, top_y;    ///< of the top's corner from the bottom's, 0
+  std::optional<Expression> top_dx, top_dy;  ///< size of the top, >= 0: dx, dy
+  friend bool operator==(const WedgePrimitive&, const WedgePrimitive&) = default;
+};
+struct MeridianPoint : Element {
+  Expression r, z;  ///< r >= 0
+  friend bool operator==(const MeridianPoint&, const MeridianPoint&) = default;
+};
+/// A simple polygon in the half plane r >= 0, turned once about z.
+struct RevolutionPrimitive : Element {
+  std::vector<MeridianPoint> points;  ///< >= 3, either sense
+  friend bool operator==(const RevolutionPrimitive&, const RevolutionPrimitive&) = default;
+};
+struct PolyhedronVertex : Element {
+  Expression x, y, z;
+  friend bool operator==(const PolyhedronVertex&, const PolyhedronVertex&) = default;
+};
+struct PolyhedronFace : Element {
+  ExpressionList vertices;  ///< whole numbers from 0, counter-clockwise seen from outside
+  friend bool operator==(const PolyhedronFace&, const PolyhedronFace&) = default;
+};
+/// What plane faces enclose.
+struct PolyhedronPrimitive : Element {
+  std::vector<PolyhedronVertex> vertices;  ///< >= 4
+  std::vector<PolyhedronFace> faces;       ///< >= 4
+  friend bool operator==(const PolyhedronPrimitive&, const PolyhedronPrimitive&) = default;
+};
 struct AxisRange : Element {
   Name axis;
   Expression from, to;
@@ -118,8 +149,8 @@ struct CsgScale : Element {
 
 struct CsgNode {
   std::variant<BoxPrimitive, SpherePrimitive, EllipsoidPrimitive, CylinderPrimitive, ConePrimitive, TorusPrimitive,
-               ExtrusionPrimitive, VolumeElementPrimitive, CsgUnion, CsgIntersection, CsgDifference, CsgTransform,
-               CsgTranslate, CsgRotate, CsgScale>
+               ExtrusionPrimitive, WedgePrimitive, RevolutionPrimitive, PolyhedronPrimitive, VolumeElementPrimitive,
+               CsgUnion, CsgIntersection, CsgDifference, CsgTransform, CsgTranslate, CsgRotate, CsgScale>
       value;
   friend bool operator==(const CsgNode&, const CsgNode&) = default;
 };
@@ -130,8 +161,8 @@ struct CsgBody : Element {
   friend bool operator==(const CsgBody&, const CsgBody&) = default;
 };
 
-/// A body in a foreign file. `unit` is mandatory for formats that have none (STL, OBJ, PLY, OFF) and refused for STEP
-/// and IGES.
+/// A body in a foreign file. `unit` is mandatory for formats that have none (STL, OBJ, PLY, OFF, BREP) and refused for
+/// STEP and IGES.
 struct ImportBody : Element {
   Href href;
   std::optional<std::string> sha256;
