@@ -176,12 +176,89 @@ def kernels(binaries):
             print(f"| {what} | {ours:.2f} | " + (f"{peer:.1f} | {ours / peer:.4f} |" if peer else " | |"))
 
 
+DOCUMENT = """<?xml version="1.0" encoding="UTF-8"?>
+<meso xmlns="urn:meso-format:1.0" version="1.0" unit="millimeter">
+{systems}{bodies}<unitCells>{cell}</unitCells><patterns>{pattern}</patterns>
+<parts><part id="part"{body}><apply pattern="cells" operation="{operation}"/></part></parts>
+<build><item part="part"><mesh samples="{samples}" {box}/></item></build></meso>
+"""
+SHEET = """<unitCell id="cell"><box dx="1" dy="1" dz="1"/><implicit surface="gyroid" kind="shell" thickness="0.6"/></unitCell>"""
+TUBE = dict(operation="union", samples="521, 521, 41", box='x="-26" y="-26" z="0" dx="52" dy="52" dz="4"')
+
+
+def fill(lower, upper, step):
+    return "".join(f'<range axis="{a}" from="{lo}" to="{hi}" step="{step}"/>' for a, lo, hi in zip("xyz", lower, upper))
+
+
+def bcc_block():
+    corners = "".join(f'<node id="n{i}" x="{5 * (i & 1)}" y="{5 * (i >> 1 & 1)}" z="{5 * (i >> 2)}"/>' for i in range(8))
+    beams = "".join(f'<beam from="n{i}" to="m"/>' for i in range(8))
+    return DOCUMENT.format(
+        systems="", operation="intersection", body=' macrostructure="cube"', samples="501, 501, 501", box='x="0" y="0" z="0" dx="50" dy="50" dz="50"',
+        bodies='<macrostructures><macrostructure id="cube"><csg><box dx="50" dy="50" dz="50"/></csg></macrostructure></macrostructures>',
+        cell=f'<unitCell id="cell"><box dx="5" dy="5" dz="5"/><beams radius="0.5"><node id="m" x="2.5" y="2.5" z="2.5"/>{corners}{beams}</beams></unitCell>',
+        pattern=f'<pattern id="cells" unitCell="cell"><fill>{fill([0] * 3, [50] * 3, 5)}</fill></pattern>')
+
+
+def conformal_tube():
+    """20 cells across the wall, 60 around, 4 along."""
+    return DOCUMENT.format(
+        bodies="", cell=SHEET, body="", **TUBE,
+        systems='<coordinateSystems><coordinateSystem id="polar"><axis name="r" kind="distance" x="1"/><axis name="phi" kind="circular" z="1"/>'
+                '<axis name="z" kind="linear" z="1"/></coordinateSystem></coordinateSystems>',
+        pattern='<pattern id="cells" unitCell="cell" coordinateSystem="polar" mapping="conformal"><loop index="i" axis="r" count="20" start="5" spacing="1"/>'
+                '<loop index="j" axis="phi" count="60" spacing="6deg"/><loop index="k" axis="z" count="4" spacing="1"/></pattern>')
+
+
+def rigid_tube():
+    """Cells of the same size, not bent, in the same tube."""
+    tube = ('<difference><cylinder x1="0" y1="0" z1="0" x2="0" y2="0" z2="4" radius="25"/>'
+            '<cylinder x1="0" y1="0" z1="-1" x2="0" y2="0" z2="5" radius="5"/></difference>')
+    return DOCUMENT.format(
+        systems="", cell=SHEET, body=' macrostructure="tube"', **{**TUBE, "operation": "intersection"},
+        bodies=f'<macrostructures><macrostructure id="tube"><csg>{tube}</csg></macrostructure></macrostructures>',
+        pattern=f'<pattern id="cells" unitCell="cell"><fill>{fill([-26, -26, 0], [26, 26, 4], 1)}</fill></pattern>')
+
+
+CUT_BOX = "box scale 0.6,0.5,0.4 rotate 1,2,3 0.7 cylinder scale 0.25 difference -b -1,-1,-1,1,1,1 -s 100,100,100".split()
+
+
+def documents(binaries, pairs, out, folder):
+    head(f"Documents, sharp edges and tetrahedra, 1 thread; medians of {pairs}")
+    meso, flags = binaries / "meso", ["--jobs", 1]
+    convert = lambda document, *more: [meso, "convert", document, out, "--engine", "implicit", *more, *flags]
+    for name, text in (("bcc", bcc_block()), ("conformal", conformal_tube()), ("rigid", rigid_tube())):
+        (folder / f"{name}.meso").write_text(text, encoding="utf-8")
+    beam = ROOT / "examples/ibeam/ibeam.meso"
+    commands = {
+        "BCC, 10³ cells, r = 0.5 mm, 0.1 mm": convert(folder / "bcc.meso"),
+        "I-beam ∩ BCC, pitch 5 mm, 0.2 mm": convert(beam, "--spacing", "0.2mm"),
+        "I-beam ∩ BCC, pitch 2.5 mm, 0.2 mm": convert(beam, "--spacing", "0.2mm", "--set", "pitch=2.5mm", "--set", "strut=0.5mm"),
+        "gyroid tube, conformal, 20 × 60 × 4 cells, 0.1 mm": convert(folder / "conformal.meso"),
+        "gyroid tube, rigid, the same samples": convert(folder / "rigid.meso"),
+        "rotated box − cylinder, 100³": [meso, "sdf", *CUT_BOX, "-o", out, *flags],
+        "rotated box − cylinder, 100³, --sharp": [meso, "sdf", *CUT_BOX, "--sharp", "-o", out, *flags],
+    }
+    runs = alternate(commands, pairs, out, None)
+    for name, done in runs.items():
+        row(name, done)
+    over = lambda a, b: statistics.median(x["cpu"] / y["cpu"] for x, y in zip(runs[a], runs[b]))
+    names = list(commands)
+    print(f"\nConformal over rigid: {over(names[3], names[4]):.2f}; sharp over plain: {over(names[6], names[5]):.2f}.")
+    tets = folder / "gyroid.vtu"
+    job = subprocess.run([meso, "sdf", "tpms.gyroid", "-b", "0,0,0,4,4,4", "--elements", "1000000", "-o", tets, "--json", "--jobs", "1"],
+                         stdout=subprocess.PIPE, check=True)
+    report = json.loads(job.stdout)
+    low, high = report["dihedralDegrees"]
+    print(f"\nGyroid of 4³ cells: {report['elements']:,} tetrahedra in {report['seconds']:.2f} s wall, dihedral angles {low:.1f}° to {high:.1f}°.")
+
+
 def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("--pairs", type=int, default=5)
     parser.add_argument("--samples", type=int, default=800, help="along each axis, of the rows beside peers")
     parser.add_argument("--binaries", type=pathlib.Path, default=ROOT / "build/release/bin")
-    parser.add_argument("--only", choices=["peers", "ours", "kernels"])
+    parser.add_argument("--only", choices=["peers", "ours", "documents", "kernels"])
     parser.add_argument("--write-torus", type=pathlib.Path, help=argparse.SUPPRESS)
     arguments = parser.parse_args()
     if arguments.write_torus:
@@ -194,6 +271,8 @@ def main():
             against_peers(arguments.binaries, arguments.samples, arguments.pairs, folder / "out.ply")
         if arguments.only in (None, "ours"):
             ours_alone(arguments.binaries, arguments.pairs, folder / "out.ply", folder)
+        if arguments.only in (None, "documents"):
+            documents(arguments.binaries, arguments.pairs, folder / "out.ply", folder)
         if arguments.only in (None, "kernels"):
             kernels(arguments.binaries)
 
