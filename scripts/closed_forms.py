@@ -115,7 +115,7 @@ def polyhedron(vertices, faces):
 
 
 def dodecahedron(edge):
-    """Corners in circular order around each of the twelve directions (0, 1, g), turned cyclically."""
+    """Corners in circular order around each of the twelve directions (0, g, 1), turned cyclically."""
     g, s = (1 + math.sqrt(5)) / 2, edge * (1 + math.sqrt(5)) / 4
     signs = (-1, 1)
     corners = [(x, y, z) for x in signs for y in signs for z in signs]
@@ -125,7 +125,7 @@ def dodecahedron(edge):
     faces = []
     for a in signs:
         for b in signs:
-            for n in ((0, a * 1, b * g), (a * g, 0, b * 1), (a * 1, b * g, 0)):
+            for n in ((0, a * g, b), (a * g, b, 0), (a, 0, b * g)):
                 height = [sum(u * v for u, v in zip(n, c)) for c in corners]
                 face = [i for i, h in enumerate(height) if h > max(height) - 1e-9]
                 middle = [sum(corners[i][k] for i in face) / 5 for k in range(3)]
