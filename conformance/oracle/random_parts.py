@@ -3,6 +3,7 @@
 """Random parts that `meso verify --deep` must pass: many small documents, and the smallest that fails.
 
 usage: random_parts.py --meso PATH [--count 40 | --quick] [--seed 1] [--kind NAME] [--keep FOLDER] [--jobs 1]
+       random_parts.py --meso PATH --documents FOLDER
 
 Documents are those of membership.py and more: lattices offset from and turned against bodies, graded ones, imported
 bodies. `meso` realises each and judges it by its own evaluator of the definitions, which shares no code with the engine.
@@ -287,6 +288,16 @@ def print_summary(total, reasons):
         print(f"{kind}: {sum(counts.values())} documents, {', '.join(told)}" + "".join(f"; {n} x {r}" for r, n in because.most_common()))
 
 
+def judge_again(judge, folder):
+    """Whether all documents of a folder are what their definitions say."""
+    good = True
+    for file in sorted(pathlib.Path(folder).glob("*.meso")):
+        verdict, words = judge.verdict(file)
+        print(f"{verdict} {file.name} {words}".rstrip(), flush=True)
+        good = good and verdict in ("ok", "touching")
+    return good
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("--meso", required=True)
@@ -299,8 +310,11 @@ def main():
     parser.add_argument("--jobs", type=int, default=1, help="documents at a time")
     parser.add_argument("--kind", choices=sorted(KINDS), action="append")
     parser.add_argument("--keep", help="a folder for the documents")
+    parser.add_argument("--documents", help="a folder of documents, to be judged instead of random ones")
     parser.add_argument("--verbose", action="store_true")
     a = parser.parse_args()
+    if a.documents:
+        sys.exit(0 if judge_again(Judge(a.meso, a.points, a.seconds), a.documents) else 1)
     kinds = a.kind or list(KINDS)
     if a.quick:
         a.count, a.points, a.seconds, a.refusals = len(kinds), 20000, 12, 0.5

@@ -236,10 +236,23 @@ void warn_of_contacts(const Solids& solids, ElementId where, const SolidContext&
   if (multiple > 0) context.report(Code::geometry_non_manifold, where, {std::to_string(multiple)});
 }
 
+/// Two alike that start from one point meet in plane curves with a corner; at its least tolerance OpenCASCADE follows
+/// an edge there that it has not made, and ends the process.
+bool have_two_cones(const Solids& objects, const Solids& tools) {
+  std::size_t cones = 0;
+  for (const Solids* solids : {&objects, &tools})
+    for (const TopoDS_Shape& solid : *solids)
+      for (TopExp_Explorer it(solid, TopAbs_FACE); it.More(); it.Next())
+        cones += BRepAdaptor_Surface(TopoDS::Face(it.Current()), Standard_False).GetType() == GeomAbs_Cone;
+  return cones > 1;
+}
+
 std::optional<Solids> checked(BOPAlgo_Operation kind, const Solids& objects, const Solids& tools, ElementId where,
                               const SolidContext& context, CutImages* images = nullptr) {
   std::string fault;
-  for (const double fuzzy : {0.0, 1e-6, 1e-5}) {
+  std::vector<double> ladder{0.0, 1e-6, 1e-5};
+  if (have_two_cones(objects, tools)) ladder.erase(ladder.begin());
+  for (const double fuzzy : ladder) {
     if (context.run.should_stop()) break;
     try {
       Attempt result = attempt(kind, objects, tools, fuzzy, context.run);

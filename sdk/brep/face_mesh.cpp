@@ -3,16 +3,20 @@
 
 #include <Poly_PolygonOnTriangulation.hxx>
 #include <Standard_OutOfMemory.hxx>
+#include <algorithm>
 #include <bit>
 #include <map>
 
 #include "ellipsoid.hpp"
+#include "fit_triangles.hpp"
 #include "plane_mesh.hpp"
+#include "value_geometry.hpp"
 
 namespace meso::brep {
 namespace {
 
 constexpr std::size_t many_loops = 10;
+constexpr double same_parameter = 1e-9;  ///< of the edge
 
 class FaceMesher {
  public:
@@ -22,7 +26,8 @@ class FaceMesher {
         edges_(edges),
         vertices_(vertices),
         geometry_(geometry),
-        edge_points_(static_cast<std::size_t>(edges.Extent()) + 1) {}
+        edge_points_(static_cast<std::size_t>(edges.Extent()) + 1),
+        edge_at_(edge_points_.size()) {}
 
   /// Throws Standard_Failure; false: a face's triangles do not reach its edges.
   [[nodiscard]] bool mesh(const TopoDS_Shell& shell) {
@@ -37,14 +42,23 @@ class FaceMesher {
     for (std::size_t f = 0; f < faces_.size(); ++f)
       if (!is_plane[f] && !(ellipsoids[f] = ellipsoid_of(faces_[f]))) builder.Add(others, faces_[f]);
     BRepMesh_IncrementalMesh(others, tolerance_.deflection_mm, false, tolerance_.angle, true);
+    std::vector<std::vector<Border>> borders(faces_.size());
     for (std::size_t f = 0; f < faces_.size(); ++f)
       if (ellipsoids[f])
         geometry_.faces[f].mesh = mesh_of(*ellipsoids[f], tolerance_.deflection_mm, tolerance_.angle);
       else if (!is_plane[f])
-        geometry_.faces[f].mesh = taken_from(faces_[f]);
+        borders[f] = taken_from(faces_[f], geometry_.faces[f].mesh);
+    for (const auto& of_face : borders)
+      for (const Border& border : of_face) share(border);
+    for (std::size_t f = 0; f < faces_.size(); ++f)
+      if (!is_plane[f] && !ellipsoids[f]) settle(borders[f], geometry_.faces[f].mesh);
     for (std::size_t f = 0; f < faces_.size(); ++f)
       if (is_plane[f]) geometry_.faces[f].mesh = between_loops(f);
-    return is_closed();
+    if (!is_closed()) return false;
+    for (std::size_t f = 0; f < faces_.size(); ++f)
+      if (FaceTemplate& face = geometry_.faces[f]; !ellipsoids[f] && is_elementary(face.surface))
+        fit_triangles(face.mesh, to_geom(face.surface), {}, tolerance_.deflection_mm);
+    return true;
   }
 
  private:
@@ -70,6 +84,11 @@ class FaceMesher {
         }
     }
     return sum == 0;
+  }
+
+  /// OpenCASCADE's triangles are up to three times as far off as it was asked for; feet on free forms take long.
+  static bool is_elementary(const Surface& surface) {
+    return !std::holds_alternative<Plane>(surface) && !std::holds_alternative<BSplineSurface>(surface);
   }
 
   static bool has_many_loops(const FaceTemplate& face) {
@@ -121,58 +140,111 @@ class FaceMesher {
     auto triangles = triangulate_between(flat, loops);
     if (!triangles) {
       BRepMesh_IncrementalMesh(faces_[face], tolerance_.deflection_mm, false, tolerance_.angle, true);
-      return taken_from(faces_[face]);
+      settle(taken_from(faces_[face], mesh), mesh);
+      return mesh;
     }
     mesh.triangles = std::move(*triangles);
     return mesh;
   }
 
-  /// OpenCASCADE's triangles; those that an edge of zero length folds up are left out.
-  Triangulation taken_from(const TopoDS_Face& face) {
+  /// The points of one edge in the triangles of one face, along the edge's forward direction.
+  struct Border {
+    std::size_t edge = 0;  ///< index in edges_
+    std::vector<std::uint32_t> nodes;
+    std::vector<double> at;  ///< parameters
+    std::vector<MeshPoint> points;
+  };
+
+  /// OpenCASCADE's triangles, and where they end.
+  std::vector<Border> taken_from(const TopoDS_Face& face, Triangulation& result) const {
     TopLoc_Location location;
     const Handle(Poly_Triangulation) mesh = BRep_Tool::Triangulation(face, location);
     if (mesh.IsNull()) throw Standard_Failure("a face could not be meshed");
-    Triangulation result;
+    result = {};
     for (int i = 1; i <= mesh->NbNodes(); ++i)
       result.points.push_back({.point = to_vec(mesh->Node(i).Transformed(location.Transformation()))});
-    for (TopExp_Explorer it(face, TopAbs_EDGE); it.More(); it.Next())
-      take_edge_points(face, TopoDS::Edge(it.Current()), result.points);
-
     const bool flip = (face.Orientation() == TopAbs_REVERSED) != location.Transformation().IsNegative();
     for (int i = 1; i <= mesh->NbTriangles(); ++i) {
       int a = 0, b = 0, c = 0;
       mesh->Triangle(i).Get(a, b, c);
       if (flip) std::swap(b, c);
-      const std::array<std::uint32_t, 3> t{static_cast<std::uint32_t>(a - 1), static_cast<std::uint32_t>(b - 1),
-                                           static_cast<std::uint32_t>(c - 1)};
-      const Vec3 &p = result.points[t[0]].point, &q = result.points[t[1]].point, &r = result.points[t[2]].point;
-      if (p != q && q != r && r != p) result.triangles.push_back(t);
+      result.triangles.push_back(
+          {static_cast<std::uint32_t>(a - 1), static_cast<std::uint32_t>(b - 1), static_cast<std::uint32_t>(c - 1)});
     }
-    return result;
+    std::vector<Border> borders;
+    for (TopExp_Explorer it(face, TopAbs_EDGE); it.More(); it.Next()) {
+      const TopoDS_Edge& edge = TopoDS::Edge(it.Current());
+      const Handle(Poly_PolygonOnTriangulation) polygon = BRep_Tool::PolygonOnTriangulation(edge, mesh, location);
+      if (polygon.IsNull() || !polygon->HasParameters()) throw Standard_Failure("an edge could not be meshed");
+      Border& border = borders.emplace_back();
+      border.edge = static_cast<std::size_t>(edges_.FindIndex(edge));
+      for (int k = 1; k <= polygon->NbNodes(); ++k) {
+        border.nodes.push_back(static_cast<std::uint32_t>(polygon->Node(k) - 1));
+        border.at.push_back(polygon->Parameter(k));
+        border.points.push_back(result.points[border.nodes.back()]);
+      }
+    }
+    return borders;
   }
 
-  void take_edge_points(const TopoDS_Face& face, const TopoDS_Edge& edge, std::vector<MeshPoint>& points) {
-    TopLoc_Location location;
-    const Handle(Poly_Triangulation) mesh = BRep_Tool::Triangulation(face, location);
-    const Handle(Poly_PolygonOnTriangulation) polygon = BRep_Tool::PolygonOnTriangulation(edge, mesh, location);
-    if (polygon.IsNull()) throw Standard_Failure("an edge could not be meshed");
-    const int count = polygon->NbNodes();
-    const auto node = [&](int k) -> MeshPoint& { return points[static_cast<std::size_t>(polygon->Node(k) - 1)]; };
-    const TopoDS_Edge forward = TopoDS::Edge(edge.Oriented(TopAbs_FORWARD));
-    const Vec3 first =
-        geometry_.vertices[static_cast<std::size_t>(vertices_.FindIndex(TopExp::FirstVertex(forward)) - 1)];
-    const Vec3 last =
-        geometry_.vertices[static_cast<std::size_t>(vertices_.FindIndex(TopExp::LastVertex(forward)) - 1)];
+  /// An edge has the points of the face that has most: OpenCASCADE puts more where the parameters of a face run close,
+  /// as they do at the pole of a ball, and for that face only.
+  void share(const Border& border) {
+    if (border.points.size() <= edge_points_[border.edge].size()) return;
+    const TopoDS_Edge edge = TopoDS::Edge(edges_(static_cast<int>(border.edge)).Oriented(TopAbs_FORWARD));
+    const auto place = [&](const TopoDS_Vertex& vertex) {
+      return geometry_.vertices[static_cast<std::size_t>(vertices_.FindIndex(vertex) - 1)];
+    };
+    const Vec3 first = place(TopExp::FirstVertex(edge));
+    std::vector<Vec3>& shared = edge_points_[border.edge];
+    shared.clear();
+    for (const MeshPoint& p : border.points) shared.push_back(BRep_Tool::Degenerated(edge) ? first : p.point);
+    shared.front() = first;
+    shared.back() = place(TopExp::LastVertex(edge));
+    edge_at_[border.edge] = border.at;
+  }
 
-    std::vector<Vec3>& shared = edge_points_[static_cast<std::size_t>(edges_.FindIndex(edge))];
-    if (shared.empty()) {
-      const bool degenerate = BRep_Tool::Degenerated(edge);
-      for (int k = 1; k <= count; ++k) shared.push_back(degenerate ? first : node(k).point);
-      shared.front() = first;
-      shared.back() = last;
+  /// Puts the triangles' borders on the points that edges share. Triangles that an edge of zero length folds up go.
+  void settle(const std::vector<Border>& borders, Triangulation& mesh) {
+    for (const Border& border : borders) {
+      if (edge_points_[border.edge].empty()) share(border);
+      const std::vector<Vec3>& shared = edge_points_[border.edge];
+      const std::vector<double>& at = edge_at_[border.edge];
+      std::size_t own = 0;
+      std::uint32_t last = border.nodes.front();
+      for (std::size_t k = 0; k < shared.size(); ++k) {
+        if (own == border.nodes.size()) throw Standard_Failure("faces disagree on the mesh of their edge");
+        const bool has_it = shared.size() == border.nodes.size() ||
+                            std::fabs(border.at[own] - at[k]) <= same_parameter * (at.back() - at.front());
+        if (has_it) {
+          last = border.nodes[own++];
+          mesh.points[last].point = shared[k];
+        } else {
+          last = divide_segment(mesh, last, border.nodes[own], shared[k]);
+        }
+      }
+      if (own != border.nodes.size()) throw Standard_Failure("faces disagree on the mesh of their edge");
     }
-    if (static_cast<int>(shared.size()) != count) throw Standard_Failure("faces disagree on the mesh of their edge");
-    for (int k = 1; k <= count; ++k) node(k).point = shared[static_cast<std::size_t>(k - 1)];
+    std::erase_if(mesh.triangles, [&](const auto& t) {
+      const Vec3 &p = mesh.points[t[0]].point, &q = mesh.points[t[1]].point, &r = mesh.points[t[2]].point;
+      return p == q || q == r || r == p;
+    });
+  }
+
+  /// A point on the border between two others.
+  static std::uint32_t divide_segment(Triangulation& mesh, std::uint32_t from, std::uint32_t to, Vec3 point) {
+    const auto fresh = static_cast<std::uint32_t>(mesh.points.size());
+    mesh.points.push_back({.point = point});
+    for (auto& t : mesh.triangles) {
+      const auto a = std::ranges::find(t, from), b = std::ranges::find(t, to);
+      if (a == t.end() || b == t.end()) continue;
+      auto half = t;
+      half[static_cast<std::size_t>(a - t.begin())] = fresh;
+      *b = fresh;
+      mesh.triangles.push_back(half);
+      return fresh;
+    }
+    throw Standard_Failure("faces disagree on the mesh of their edge");
   }
 
   const MeshTolerance& tolerance_;
@@ -182,6 +254,7 @@ class FaceMesher {
   std::vector<TopoDS_Face> faces_;
   std::vector<bool> is_divided_;                ///< edges that get points from a face with few loops
   std::vector<std::vector<Vec3>> edge_points_;  ///< by index in edges_, along the edge's forward direction
+  std::vector<std::vector<double>> edge_at_;    ///< their parameters
 };
 
 }  // namespace

@@ -62,6 +62,11 @@ BSplineSurface to_bspline(const Handle(Geom_Surface) & surface, const UvBounds& 
   // Readers differ on periodic knot vectors; clamped ones mean the same to all.
   if (spline->IsUPeriodic()) spline->SetUNotPeriodic();
   if (spline->IsVPeriodic()) spline->SetVNotPeriodic();
+  if (spline->UMultiplicity(1) <= spline->UDegree() || spline->VMultiplicity(1) <= spline->VDegree()) {
+    UvBounds all;
+    spline->Bounds(all.u_min, all.u_max, all.v_min, all.v_max);
+    spline->Segment(all.u_min, all.u_max, all.v_min, all.v_max);
+  }
   return to_bspline(spline);
 }
 
@@ -76,6 +81,8 @@ BSplineCurve to_bspline(const Handle(Geom_Curve) & curve, double first, double l
     if (!whole) spline->Segment(first, last);
   }
   if (spline->IsPeriodic()) spline->SetNotPeriodic();
+  // What was periodic goes on beyond its first and last parameter; a value's curve ends at its first and last knot.
+  if (spline->Multiplicity(1) <= spline->Degree()) spline->Segment(spline->FirstParameter(), spline->LastParameter());
   BSplineCurve value;
   value.degree = spline->Degree();
   value.closed = spline->IsClosed();

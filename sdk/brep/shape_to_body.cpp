@@ -55,9 +55,12 @@ class TemplateBuilder {
     const TopoDS_Face forward = TopoDS::Face(face.Oriented(TopAbs_FORWARD));
     const TopoDS_Wire outer = BRepTools::OuterWire(forward);
     if (!outer.IsNull()) value.loops.push_back(to_loop(outer, forward, against_du_dv));
-    for (TopoDS_Iterator it(forward); it.More(); it.Next())
-      if (it.Value().ShapeType() == TopAbs_WIRE && !it.Value().IsSame(outer))
-        value.loops.push_back(to_loop(TopoDS::Wire(it.Value()), forward, against_du_dv));
+    for (TopoDS_Iterator it(forward); it.More(); it.Next()) {
+      if (it.Value().ShapeType() != TopAbs_WIRE || it.Value().IsSame(outer)) continue;
+      auto loop = to_loop(TopoDS::Wire(it.Value()), forward, against_du_dv);
+      // A line along which another face touches this one bounds nothing.
+      if (!loop.empty()) value.loops.push_back(std::move(loop));
+    }
     value.moments = face_moments(face);
     value.box = face_box(face);
     return value;

@@ -59,7 +59,14 @@ bool usable(const Frustum& frustum, double tolerance) {
          std::fmax(frustum.start_radius, frustum.end_radius) > tolerance;
 }
 
-TopoDS_Shape fused(const std::vector<TopoDS_Shape>& solids, const RunOptions& run) {
+/// Struts that taper: two alike that start from one point meet in plane curves with a corner, and OpenCASCADE, at its
+/// least tolerance, follows an edge there that it has not made.
+bool tapers(const CellPrimitive& primitive) {
+  const Frustum* strut = std::get_if<Frustum>(&primitive);
+  return strut != nullptr && strut->start_radius != strut->end_radius;
+}
+
+TopoDS_Shape fused(const std::vector<TopoDS_Shape>& solids, double fuzzy, const RunOptions& run) {
   const Handle(StopWatch) watch = new StopWatch(run);
   if (solids.size() == 1) return solids.front();
   TopTools_ListOfShape first, rest;
@@ -69,6 +76,7 @@ TopoDS_Shape fused(const std::vector<TopoDS_Shape>& solids, const RunOptions& ru
   fuse.SetTools(rest);
   fuse.SetNonDestructive(true);
   fuse.SetRunParallel(true);
+  fuse.SetFuzzyValue(fuzzy);
   fuse.Build(watch->Start());
   return fuse.HasErrors() ? TopoDS_Shape() : fuse.Shape();
 }
@@ -237,24 +245,45 @@ Reach reach_of(const CellShape& cell) {
   return reach;
 }
 
+namespace {
+
+/// In another ball: where struts of several radii end, OpenCASCADE is asked for the largest ball only. Balls about one
+/// centre have nothing in common, and struts that end on the lesser of them have crashed its intersection.
+bool is_within(const CellPrimitive& primitive, const std::vector<CellPrimitive>& others) {
+  const Ball* ball = std::get_if<Ball>(&primitive);
+  return ball != nullptr && std::ranges::any_of(others, [&](const CellPrimitive& other) {
+           const Ball* larger = std::get_if<Ball>(&other);
+           return larger != nullptr && larger->radius > ball->radius &&
+                  norm(larger->centre - ball->centre) + ball->radius <= larger->radius;
+         });
+}
+
+}  // namespace
+
 std::optional<TopoDS_Shape> solid_in_box(const CellShape& cell, const Reach& reach,
                                          const std::vector<std::uint32_t>& parts, const RunOptions& run,
                                          DiagnosticSink& sink) {
   const Vec3 size = cell.size();
+  const auto by = [&](const Reach::Part& part) {
+    return Vec3{part.shift[0] * size.x, part.shift[1] * size.y, part.shift[2] * size.z};
+  };
   std::vector<TopoDS_Shape> solids;
   std::vector<CellPrimitive> primitives;
-  for (const std::uint32_t index : parts) {
-    const auto& [solid, shift] = reach.parts[index];
-    const Vec3 by{shift[0] * size.x, shift[1] * size.y, shift[2] * size.z};
+  for (const std::uint32_t index : parts)
+    if (!cell.primitives.empty())
+      primitives.push_back(translated(cell.primitives[reach.parts[index].solid], by(reach.parts[index])));
+  for (std::size_t n = 0; n < parts.size(); ++n) {
+    if (!primitives.empty() && is_within(primitives[n], primitives)) continue;
+    const Reach::Part& part = reach.parts[parts[n]];
     gp_Trsf move;
-    move.SetTranslation(gp_Vec(by.x, by.y, by.z));
-    solids.push_back(cell.solids[solid].Moved(TopLoc_Location(move)));
-    if (!cell.primitives.empty()) primitives.push_back(translated(cell.primitives[solid], by));
+    move.SetTranslation(gp_Vec(by(part).x, by(part).y, by(part).z));
+    solids.push_back(cell.solids[part.solid].Moved(TopLoc_Location(move)));
   }
   if (solids.empty()) return TopoDS_Shape();
   const char* fault = nullptr;
   try {
-    const TopoDS_Shape whole = fused(solids, run);
+    const double fuzzy = std::ranges::any_of(primitives, tapers) ? cell.tolerance() / 4 : 0;
+    const TopoDS_Shape whole = fused(solids, fuzzy, run);
     const std::optional<TopoDS_Shape> inside = whole.IsNull() ? std::nullopt : cut_to_box(whole, cell, run);
     if (!inside) {
       fault = "the unit cell cannot be cut to its box";

@@ -49,6 +49,8 @@ class CellSplit {
     auto divided = divide_faces(cell_, body_, options_, run);
     if (!divided) return {.fault = "a cell cannot be split by the body"};
     faces_ = std::move(*divided);
+    // What a face is cut along goes round or from border to border: the rest of it was not found.
+    if (faces_.loose) return {.fault = "a face is cut along a part of a line"};
     join_sets();
     for (const auto step : {&CellSplit::place_cell_pieces, &CellSplit::place_caps, &CellSplit::check_sums})
       if (const char* fault = (this->*step)()) return {.fault = fault};

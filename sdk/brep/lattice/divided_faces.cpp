@@ -169,7 +169,11 @@ void FaceDivision::read_edges() {
   for (std::uint32_t p = 0; p < out_.pieces.size(); ++p)
     for (TopExp_Explorer it(out_.pieces[p].face, TopAbs_EDGE); it.More(); it.Next()) {
       const TopoDS_Edge& edge = TopoDS::Edge(it.Current());
-      if (BRep_Tool::Degenerated(edge) || edge.Orientation() == TopAbs_INTERNAL) continue;
+      if (BRep_Tool::Degenerated(edge)) continue;
+      if (edge.Orientation() == TopAbs_INTERNAL) {
+        out_.loose = true;
+        continue;
+      }
       const auto index = static_cast<std::size_t>(out_.edges.Add(edge)) - 1;
       if (index >= out_.uses.size()) {
         out_.uses.emplace_back();

@@ -49,6 +49,7 @@ struct DividedFaces {
   TopTools_IndexedMapOfShape edges;
   std::vector<std::vector<PieceUse>> uses;  ///< per edge
   std::vector<bool> by_cell, by_body;       ///< per edge: bounds pieces of these
+  bool loose = false;                       ///< an edge lies in a face and does not divide it
   Handle(IntTools_Context) context = new IntTools_Context;
 };
 

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "face_moments.hpp"
-#include "lattice/fit_triangles.hpp"
+#include "fit_triangles.hpp"
 #include "lattice/imprint.hpp"
 #include "lattice/natural_faces.hpp"
 #include "lattice/orbit_matcher.hpp"

@@ -13,10 +13,12 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <span>
 #include <tuple>
 
 #include "meso/brep/instance_map.hpp"
 #include "meso/brep/placement.hpp"
+#include "plane_mesh.hpp"
 #include "stop_watch.hpp"
 
 namespace meso::brep {
@@ -122,6 +124,85 @@ using PointName = std::pair<std::array<double, 3>, Index3>;
 
 PointName name_of(const MeshPoint& p) { return {{p.point.x, p.point.y, p.point.z}, p.offset}; }
 
+/// OpenCASCADE puts more points on an edge where the parameters of a face run close, as they do at the pole of a ball.
+/// They are taken over for all faces; false if there are none.
+bool take_points(const TopoDS_Face& face, const TemplateEdges& kind, const Template& geometry, EdgePolygons& polygons,
+                 std::vector<bool>& taken) {
+  TopLoc_Location location;
+  const Handle(Poly_Triangulation) mesh = BRep_Tool::Triangulation(face, location);
+  if (mesh.IsNull()) return false;
+  bool any = false;
+  for (TopExp_Explorer it(face, TopAbs_EDGE); it.More(); it.Next()) {
+    const TopoDS_Edge& edge = TopoDS::Edge(it.Current());
+    const Handle(Poly_PolygonOnTriangulation) polygon = BRep_Tool::PolygonOnTriangulation(edge, mesh, location);
+    const OrbitMatcher::Match& match = match_of(kind, edge);
+    if (polygon.IsNull() || geometry.edges[match.edge].degenerate) continue;
+    std::vector<Vec3>& known = polygons[match.edge];
+    if (polygon->NbNodes() <= static_cast<int>(known.size()) + 2) continue;
+    known.clear();
+    for (int k = 2; k < polygon->NbNodes(); ++k)
+      known.push_back(to_vec(mesh->Node(polygon->Node(k)).Transformed(location.Transformation())) -
+                      cell_origin(geometry, match.offset));
+    if (match.flipped) std::ranges::reverse(known);
+    taken[match.edge] = any = true;
+  }
+  return any;
+}
+
+/// A sliver between its edges, for which OpenCASCADE has no triangles: where they run in a plane, to a millionth of the
+/// cell, the plane is as good as the surface. Nothing where they do not, or are not one loop.
+std::optional<Triangulation> flat_mesh(const TopoDS_Face& face, const TemplateEdges& kind, const Template& geometry,
+                                       const EdgePolygons& polygons) {
+  std::map<PointName, std::vector<MeshPoint>> from;  // the points of an edge but its last, by its first
+  std::map<PointName, PointName> next;
+  for (TopExp_Explorer it(face, TopAbs_EDGE); it.More(); it.Next()) {
+    const TopoDS_Edge& edge = TopoDS::Edge(it.Current());
+    const OrbitMatcher::Match& match = match_of(kind, edge);
+    const EdgeTemplate& orbit = geometry.edges[match.edge];
+    if (orbit.degenerate) return {};
+    std::vector<MeshPoint> points;
+    points.push_back({geometry.vertices[orbit.vertex[0]], match.offset + orbit.vertex_offset[0]});
+    for (const Vec3 p : polygons[match.edge]) points.push_back({p, match.offset});
+    points.push_back({geometry.vertices[orbit.vertex[1]], match.offset + orbit.vertex_offset[1]});
+    if (match.flipped != (edge.Orientation() == TopAbs_REVERSED)) std::ranges::reverse(points);
+    const PointName start = name_of(points.front()), end = name_of(points.back());
+    points.pop_back();
+    if (!from.emplace(start, std::move(points)).second) return {};
+    next.emplace(start, end);
+  }
+  Triangulation out;
+  if (from.empty()) return {};
+  PointName at = from.begin()->first;
+  for (std::size_t edges = 0; edges < from.size(); ++edges) {
+    const auto points = from.find(at);
+    if (points == from.end() || (edges > 0 && points == from.begin())) return {};
+    out.points.insert(out.points.end(), points->second.begin(), points->second.end());
+    at = next.at(at);
+  }
+  if (at != from.begin()->first) return {};
+  std::vector<Vec3> places;
+  Vec3 middle{}, normal{};
+  for (const MeshPoint& p : out.points) middle += places.emplace_back(p.point + cell_origin(geometry, p.offset));
+  middle = middle / static_cast<double>(places.size());
+  for (std::size_t i = 0; i < places.size(); ++i)
+    normal += cross(places[i] - middle, places[(i + 1) % places.size()] - middle);
+  if (norm(normal) == 0) return {};
+  normal = normal / norm(normal);
+  const Vec3 x = (places[0] - middle) / norm(places[0] - middle), y = cross(normal, x);
+  std::vector<PlanePoint> flat;
+  std::vector<std::uint32_t> loop;
+  const double allowed = 1e-6 * std::cbrt(std::fabs(determinant(geometry.lattice)));
+  for (const Vec3 p : places) {
+    if (std::fabs(dot(p - middle, normal)) > allowed) return {};
+    loop.push_back(static_cast<std::uint32_t>(flat.size()));
+    flat.push_back({dot(p - middle, x), dot(p - middle, y)});
+  }
+  auto triangles = triangulate_between(flat, std::span(&loop, 1));
+  if (!triangles) return {};
+  out.triangles = std::move(*triangles);
+  return out;
+}
+
 /// Segments that have been gone along once more in one direction than in the other.
 class Segments {
  public:
@@ -145,9 +226,9 @@ EdgePolygons mesh_alike(const std::vector<TemplateEdges>& kinds, const Template&
   constexpr int most_divisions = 5;
   EdgePolygons polygons(geometry.edges.size());
   std::vector<int> divisions(geometry.edges.size(), 0);
-  std::vector<bool> changed(geometry.edges.size(), true);
+  std::vector<bool> changed(geometry.edges.size(), true), taken(geometry.edges.size(), false);
   for (int round = 0; round <= most_divisions; ++round) {
-    std::vector<bool> divided(geometry.edges.size());
+    std::vector<bool> divided = taken;
     for (const TemplateEdges& kind : kinds)
       for (std::size_t i = 0; i < kind.matches.size(); ++i) {
         const std::uint32_t orbit = kind.matches[i].edge;
@@ -157,6 +238,7 @@ EdgePolygons mesh_alike(const std::vector<TemplateEdges>& kinds, const Template&
                                  divisions[orbit]);
       }
     std::vector<bool> coarse(geometry.edges.size());
+    taken.assign(geometry.edges.size(), false);
     bool done = true;
     for (const TemplateEdges& kind : kinds) {
       if (run.should_stop()) throw Standard_Failure("stopped");
@@ -167,19 +249,26 @@ EdgePolygons mesh_alike(const std::vector<TemplateEdges>& kinds, const Template&
         const TopoDS_Face& face = TopoDS::Face(it.Value());
         if (named_mesh(face, kind, geometry, polygons)) continue;
         done = false;
+        if (take_points(face, kind, geometry, polygons, taken)) continue;
         for (TopExp_Explorer edge(face, TopAbs_EDGE); edge.More(); edge.Next())
           coarse[match_of(kind, TopoDS::Edge(edge.Current())).edge] = true;
       }
     }
     if (done) return polygons;
-    changed = coarse;
-    for (std::size_t e = 0; e < coarse.size(); ++e) divisions[e] += coarse[e];
+    for (std::size_t e = 0; e < coarse.size(); ++e) {
+      divisions[e] += coarse[e];
+      taken[e] = taken[e] && !coarse[e];
+      changed[e] = coarse[e] || taken[e];
+    }
   }
   throw Standard_Failure("a face cannot be divided into triangles");
 }
 
-std::optional<Triangulation> named_mesh(const TopoDS_Face& face, const TemplateEdges& kind, const Template& geometry,
-                                        const EdgePolygons& polygons) {
+namespace {
+
+/// OpenCASCADE's triangles, if they reach the edges.
+std::optional<Triangulation> own_mesh(const TopoDS_Face& face, const TemplateEdges& kind, const Template& geometry,
+                                      const EdgePolygons& polygons) {
   TopLoc_Location location;
   const Handle(Poly_Triangulation) mesh = BRep_Tool::Triangulation(face, location);
   if (mesh.IsNull()) return {};
@@ -230,6 +319,14 @@ std::optional<Triangulation> named_mesh(const TopoDS_Face& face, const TemplateE
       segments.add(out.points[nodes[k]], out.points[nodes[k + 1]], reversed ? 1 : -1);
   if (!segments.cancel()) return {};
   return out;
+}
+
+}  // namespace
+
+std::optional<Triangulation> named_mesh(const TopoDS_Face& face, const TemplateEdges& kind, const Template& geometry,
+                                        const EdgePolygons& polygons) {
+  auto mesh = own_mesh(face, kind, geometry, polygons);
+  return mesh ? std::move(mesh) : flat_mesh(face, kind, geometry, polygons);
 }
 
 }  // namespace meso::brep

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "lattice/fit_triangles.hpp"
+#include "fit_triangles.hpp"
 
 #include <ShapeAnalysis_Surface.hxx>
 #include <map>
@@ -37,10 +37,12 @@ Vec3 place_of(const MeshPoint& p, const Mat3& lattice) {
 template <typename Wants>
 void halve(Triangulation& mesh, const Handle(Geom_Surface) & surface, const Mat3& lattice, const Wants& wants) {
   constexpr int most_passes = 12;  // each halves what is too long
+  // Triangles that have nothing to do with the surface get no better.
+  const std::size_t most_triangles = 8 * mesh.triangles.size() + 1000;
   const Handle(ShapeAnalysis_Surface) analysis = new ShapeAnalysis_Surface(surface);
   const auto foot = [&](Vec3 p) { return to_vec(analysis->Value(analysis->ValueOfUV(to_pnt(p), 1e-7))); };
   const auto place = [&](std::uint32_t i) { return place_of(mesh.points[i], lattice); };
-  for (int pass = 0; pass < most_passes; ++pass) {
+  for (int pass = 0; pass < most_passes && mesh.triangles.size() < most_triangles; ++pass) {
     std::vector<bool> divided(mesh.triangles.size());
     bool any = false;
     for (const auto& [segment, sides] : segments_of(mesh)) {
