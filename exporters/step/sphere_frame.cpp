@@ -103,7 +103,8 @@ Clearance clearance_of(const AxisFrame& frame, const std::vector<Loop>& loops, b
     }
     if (crossings == 0) found.margin = std::min(found.margin, beside);
     if (crossings > 1) found.crossings += crossings;
-    if (found.crossings > least.crossings) return found;
+    if (found.crossings > least.crossings || (found.crossings == least.crossings && found.margin <= least.margin))
+      return found;
     if (crossings == 0 && loops.size() == 1 && (signed_area(frame, loop) < 0) != reversed) found.crossings += 2;
   }
   return found;
