@@ -2,9 +2,9 @@
 #pragma once
 // A program of the command language as a document, and back.
 //
-//   const auto document = sdf::document_of(*program, box, sink);   // cells, patterns and a part; numbers are parameters
+//   const auto document = sdf::document_of(*program, box, sink);  // cells, patterns and a part
 //   sdf::WhyNot why;
-//   const auto again = sdf::program_of(evaluation, "", why);       // the same field, box and samples, to the bit
+//   const auto again = sdf::program_of(evaluation, "", why);  // the same field, box and samples, to the bit
 //   print(sdf::command_line(*again));
 //
 // What a document says is less than what words say (docs/sdf.md, "As a document"); the others are SDF_NOT_A_DOCUMENT,
