@@ -214,5 +214,22 @@ TEST_F(Enclosed, CopiesThatOverlapAreOneHollow) {
   EXPECT_GT(volume, volume_of(body) - 2 * one);
 }
 
+/// Pockets that lie side by side in one wall between cells are shells of their own.
+TEST_F(Enclosed, PocketsInOneWallAreApart) {
+  std::string pockets;
+  for (const char* x : {"0", "4"})
+    for (const char* yz : {"1", "3"})
+      pockets += std::string("<sphere x='") + x + "' y='" + yz + "' z='" + yz + "' radius='0.5'/>";
+  const auto made = realised(
+      macrostructure("<box dx='12' dy='4' dz='4'/>") +
+      "<unitCells><unitCell id='u'><box dx='4' dy='4' dz='4'/><csg><difference><box dx='4' dy='4' dz='4'/>" + pockets +
+      "</difference></csg></unitCell></unitCells><patterns><pattern id='c' unitCell='u'><loop index='i' "
+      "axis='x' count='3' spacing='4'/></pattern></patterns>" +
+      part("<apply pattern='c' operation='intersection'/>"));
+  expect_body(made, "lattice", 12 * 4 * 4 - 6 * 4 * std::numbers::pi / 3 * 0.125);
+  ASSERT_EQ(made->body.solids.size(), 1u);
+  EXPECT_EQ(made->body.solids.front().voids.size(), 4u);
+}
+
 }  // namespace
 }  // namespace meso::brep

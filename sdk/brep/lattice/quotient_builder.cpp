@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lattice/quotient_builder.hpp"
 
+#include <algorithm>
 #include <map>
+#include <set>
 #include <string>
 
 #include "face_moments.hpp"
@@ -218,7 +220,9 @@ bool Builder::add_faces(const RunOptions& run) {
   return closed;
 }
 
-/// Faces that share an edge inside the box stay together; a wall, where it shows, hangs on the skin beside it.
+/// Faces of the skin that share an edge stay together. A wall hangs on the skin beside it where that is in one piece; a
+/// wall between several must not tie them together, because it may not show: they are then joined edge by edge where it
+/// does.
 bool Builder::find_clusters(CellKind& kind, const std::vector<std::uint32_t>& face_lumps) {
   std::map<std::pair<std::uint32_t, Index3>, std::vector<std::pair<std::uint32_t, bool>>> at_edge;
   for (std::uint32_t f = 0; f < kind.faces.size(); ++f)
@@ -226,10 +230,20 @@ bool Builder::find_clusters(CellKind& kind, const std::vector<std::uint32_t>& fa
       for (const Coedge& use : loop)
         if (!geometry_.edges[use.edge].degenerate) at_edge[{use.edge, use.offset}].push_back({f, use.reversed});
   UnionFind sets(kind.faces.size());
+  std::vector<std::set<std::uint32_t>> beside(kind.faces.size());  // of a wall: faces of the skin
   for (const auto& [edge, uses] : at_edge) {
     if (uses.size() != 2 || uses[0].second == uses[1].second) return false;
-    const bool two_walls = kind.faces[uses[0].first].axis >= 0 && kind.faces[uses[1].first].axis >= 0;
-    if (!two_walls) sets.join(uses[0].first, uses[1].first);
+    const auto [a, b] = std::pair(uses[0].first, uses[1].first);
+    const bool wall_a = kind.faces[a].axis >= 0, wall_b = kind.faces[b].axis >= 0;
+    if (!wall_a && !wall_b) sets.join(a, b);
+    if (wall_a && !wall_b) beside[a].insert(b);
+    if (wall_b && !wall_a) beside[b].insert(a);
+  }
+  std::vector<std::uint32_t> skin(kind.faces.size());
+  for (std::uint32_t f = 0; f < skin.size(); ++f) skin[f] = sets.root(f);
+  for (std::uint32_t f = 0; f < skin.size(); ++f) {
+    const auto in_one_piece = [&](std::uint32_t other) { return skin[other] == skin[*beside[f].begin()]; };
+    if (!beside[f].empty() && std::ranges::all_of(beside[f], in_one_piece)) sets.join(f, *beside[f].begin());
   }
   std::map<std::uint32_t, std::uint32_t> numbers;
   for (std::uint32_t f = 0; f < kind.faces.size(); ++f) {
