@@ -28,7 +28,7 @@ packages=(
   libgtest-dev libgmock-dev libbenchmark-dev libxml2-utils libxerces-c-samples time
 )
 # what fixtures, pictures and the checks of fields and examples are made with; run, never linked
-slower_checks=(calculix-ccx python3-vtk9 python3-h5py python3-numpy python3-scipy python3-matplotlib python3-pil admesh
+slower_checks=(calculix-ccx python3-vtk9 python3-h5py python3-numpy python3-scipy python3-matplotlib python3-pil python3-nlopt admesh
   clang-14 clang-format-14 clang-tidy-14 libclang-rt-14-dev freecad-python3 gmsh)
 # what bench/implicit_table.py compares with: VTK and OpenVDB, about 1 GB
 peers=(libvtk9-dev libopenvdb-dev)

@@ -120,6 +120,7 @@ std::string fault_of(const Instruction& instruction) {
       if (v.x < 0 || v.y < 0 || v.z < 0 || v == Vec3{}) return "steps are positive, 0 along an axis without repetition";
       break;
     case Verb::cylindrical:
+    case Verb::helix:
     case Verb::spherical:
       if (n[0] == 0 || (instruction.verb == Verb::spherical && n[1] == 0)) return "it would not be bent";
       break;

@@ -39,6 +39,8 @@ std::array<Term, 3> bent(const Instruction& instruction) {
   switch (instruction.verb) {
     case Verb::cylindrical:
       return {sqrt(around_axis), fraction_of_turn(y, x, n[0]), z};
+    case Verb::helix:
+      return {sqrt(around_axis), fraction_of_turn(y, x, n[0]), z - fraction_of_turn(y, x, n[1])};
     case Verb::spherical:
       // Half a turn from pole to pole.
       return {sqrt(around_axis + z * z), fraction_of_turn(y, x, n[0]),

@@ -195,6 +195,35 @@ TEST(BuildField, BendsAndRepetitions) {
   EXPECT_GT(balls.value({0, 0, 1}), 0);
 }
 
+TEST(BuildField, AHelixTurnsAndRises) {
+  // A disc beside the axis, swept: Pappus counts its area times the way of its centre around the axis, and the rise
+  // shears that without changing the volume. An ellipse as high as the helix is long for its turn has pi r^2 times the
+  // helix's length.
+  const double r = 0.3, ring = 1.2, pitch = 1.5;
+  const double turn = 2 * std::numbers::pi * ring, length = std::hypot(turn, pitch);
+  const Field pipe = field_of(
+      "cylinder scale 0.3,0.3*sqrt((2*pi*1.2)^2+1.5^2)/(2*pi*1.2),1 orient 0,1,0 move 1.2,0,0 "
+      "repeat 0,0,1.5 helix 1,1.5");
+  int inside = 0;
+  constexpr int n = 120;
+  for (int i = 0; i < n; ++i)
+    for (int j = 0; j < n; ++j)
+      for (int k = 0; k < n; ++k)
+        inside +=
+            pipe.value({3.2 * (i + 0.37) / n - 1.6, 3.2 * (j + 0.61) / n - 1.6, pitch * (k + 0.43) / n}) < 0 ? 1 : 0;
+  EXPECT_NEAR(3.2 * 3.2 * pitch * inside / (n * n * n), std::numbers::pi * r * r * length, 0.01);
+
+  // An eighth of a turn up the screw everything is there again.
+  const double a = std::numbers::pi / 4;
+  const Field cells = field_of("tpms.gyroid helix 8,2");
+  for (const Vec3 p : {Vec3{0.7, 0.1, 0.3}, Vec3{1.4, -0.2, -0.8}, Vec3{-1.1, 0.6, 0.2}})
+    EXPECT_NEAR(cells.value(p),
+                cells.value({p.x * std::cos(a) - p.y * std::sin(a), p.x * std::sin(a) + p.y * std::cos(a), p.z + 0.25}),
+                1e-9);
+  EXPECT_NEAR(cells.value({-1.3, 1e-12, 0.2}), cells.value({-1.3, -1e-12, 0.2}), 1e-9) << "the seam is closed";
+  expect_same("tpms.p helix 6,0", "tpms.p cylindrical 6");
+}
+
 TEST(BuildField, StackWordsMoveSolids) {
   expect_same("ball box move 1,0,0 swap difference", "box move 1,0,0 ball difference");
   expect_same("ball dup move 1,0,0 union", "ball ball move 1,0,0 union");

@@ -35,6 +35,7 @@ void change(Solid& solid, const Instruction& instruction) {
     case Verb::density:
     case Verb::cylindrical:
     case Verb::spherical:
+    case Verb::helix:
       solid = {.unit_slope = false};
       return;
     case Verb::offset:

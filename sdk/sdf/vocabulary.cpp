@@ -39,6 +39,7 @@ std::span<const Vocable> vocabulary() {
        "bent about the z axis: x becomes the radius, n units of y a turn", true},
       {"spherical", spherical, 1, 1, F::numbers, 2, "n,m",
        "bent about the origin: x becomes the radius, n units of y a turn, m of z from pole to pole", true},
+      {"helix", helix, 1, 1, F::numbers, 2, "n,p", "wound about the z axis: as cylindrical, rising by p a turn", true},
       {"union", union_of, 2, 1, F::nothing, 0, "", "both together", false},
       {"intersection", intersection, 2, 1, F::nothing, 0, "", "what both share", false},
       {"difference", difference, 2, 1, F::nothing, 0, "", "the first without the second", false},

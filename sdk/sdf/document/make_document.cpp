@@ -98,6 +98,7 @@ std::optional<Operand> DocumentMaker::new_operand(Index node, const Box3& region
       return strut(node, region, nullptr);
     case Verb::cylindrical:
     case Verb::spherical:
+    case Verb::helix:
       return fault(node, "documents bend cells, not solids; write a pattern with mapping=\"conformal\"");
     default:
       break;

@@ -166,16 +166,21 @@ TEST(WordsAndDocuments, EveryWordIsInADesign) {
   }
   for (const Vocable& v : vocabulary())
     EXPECT_TRUE(said.contains(std::string(v.word)) || v.word == "file" || v.word == "cylindrical" ||
-                v.word == "spherical")
+                v.word == "spherical" || v.word == "helix")
         << v.word;
 }
 
 TEST(WordsAndDocuments, WhatADocumentCannotSayIsNamed) {
   const std::pair<const char*, const char*> cases[] = {
-      {"tpms.gyroid cylindrical 8", "cylindrical"},    {"tpms.gyroid spherical 8,4 ball intersection", "spherical"},
-      {"ball box union shell 0.1", "shell"},           {"tpms.gyroid shell 0.1 shell 0.05", "shell"},
-      {"tpms.gyroid offset 0.1 offset 0.1", "offset"}, {"cone 1,0,1 offset 0.1", "cone"},
-      {"strut.bcc 0.1 offset 0.1", "offset"},          {"ball repeat 1,0,1", "repeat"},
+      {"tpms.gyroid cylindrical 8", "cylindrical"},
+      {"tpms.gyroid spherical 8,4 ball intersection", "spherical"},
+      {"tpms.gyroid helix 8,1", "helix"},
+      {"ball box union shell 0.1", "shell"},
+      {"tpms.gyroid shell 0.1 shell 0.05", "shell"},
+      {"tpms.gyroid offset 0.1 offset 0.1", "offset"},
+      {"cone 1,0,1 offset 0.1", "cone"},
+      {"strut.bcc 0.1 offset 0.1", "offset"},
+      {"ball repeat 1,0,1", "repeat"},
       {"ball scale 1,2,3 shell 0.1", "scale"},
   };
   for (const auto& [design, word] : cases) {

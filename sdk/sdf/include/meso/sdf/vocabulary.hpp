@@ -35,6 +35,7 @@ enum class Verb : std::uint8_t {
   repeat,
   cylindrical,
   spherical,
+  helix,
   union_of,
   intersection,
   difference,
