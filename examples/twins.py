@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Draws every example twice: as its exact faces and, its twin, as the implicit engine's mesh. Needs Pillow.
+"""Draws the examples from the implicit engine's mesh: twins of the exact pictures, and parts that no other engine makes. Needs Pillow.
 
 usage: twins.py [--meso PROGRAM] [--exact] [--only WORD] [--statue FOLDER]
 
-Twins are made by `meso convert --engine implicit --sharp` and `meso render`, and stand beside the exact pictures as NAME-implicit.png.
+Twins are made by `meso convert --engine implicit` and `meso render`, and stand beside the exact pictures as NAME-implicit.png.
 --exact draws the exact pictures of documents/, too (those of the case studies are made by the commands on their pages). --only draws
 what has WORD in its name. --statue: where statue/run.sh left its documents; without it the statue is left out.
 """
@@ -29,10 +29,16 @@ CASES = [
     ("direction-beam/direction-beam", "0.3mm", "--cut", "x=0"),
 ]
 DOCUMENTS = {
-    "bcc_ball": "0.2mm", "bcc_tube": "0.25mm", "boundary_rules": "0.2mm", "cartesian": "0.2mm", "drilled_plate": "0.3mm",
-    "graded_block": "0.1mm", "graded_spacing": "0.3mm", "holes_at_records": "0.3mm", "keep_when": "0.4mm", "library_cells": "0.1mm",
-    "list_of_places": "0.3mm", "offset_lattice": "0.1mm", "orient_along_vector": "0.2mm", "parameters": "0.3mm", "parts_of_parts": "0.2mm",
-    "polar": "0.4mm", "radius_at_nodes": "0.1mm", "rotate_step_by_step": "0.25mm", "spherical": "0.5mm",
+    "bcc_ball": "0.2mm", "bcc_tube": "0.25mm", "boundary_rules": "0.2mm", "cartesian": "0.2mm", "density_from_field": "0.3mm",
+    "drilled_plate": "0.3mm", "graded_block": "0.1mm", "graded_spacing": "0.3mm", "holes_at_records": "0.3mm", "keep_when": "0.4mm",
+    "library_cells": "0.1mm", "list_of_places": "0.3mm", "offset_lattice": "0.1mm", "orient_along_vector": "0.2mm", "parameters": "0.3mm",
+    "parts_of_parts": "0.2mm", "polar": "0.4mm", "radius_at_nodes": "0.1mm", "rotate_step_by_step": "0.25mm", "spherical": "0.5mm",
+}
+# Cells that are functions have no exact picture.
+FIELDS = {
+    "blended_cells": "0.4mm", "graded_density": "0.4mm", "growing_cells": "0.4mm", "gyroid_ball": "0.25mm", "gyroid_cone": "0.25mm",
+    "gyroid_globe": "0.25mm", "gyroid_tube": "0.25mm", "skin_and_fillet": "0.4mm", "spring": "0.25mm", "struts_by_cell": "0.15mm",
+    "wall_of_a_length": "0.4mm",
 }
 
 
@@ -43,14 +49,14 @@ def draw(meso, source, picture, *words):
         width, height = SIZE
         subprocess.run([meso, "render", source, path, "--width", str(width), "--height", str(height), *words], check=True)
         picture.parent.mkdir(exist_ok=True)
-        Image.open(path).convert("RGB").quantize(64, dither=Image.Dither.NONE).save(picture, optimize=True)
+        Image.open(path).convert("RGB").quantize(48, dither=Image.Dither.NONE).save(picture, optimize=True)
     print(f"{picture}: {picture.stat().st_size} bytes", flush=True)
 
 
-def twin(meso, document, spacing, picture, *words):
+def twin(meso, document, spacing, picture, *words, edges=()):
     with tempfile.TemporaryDirectory() as folder:
         mesh = pathlib.Path(folder) / "mesh.ply"
-        subprocess.run([meso, "convert", "--engine", "implicit", "--sharp", "--spacing", spacing, document, mesh], check=True)
+        subprocess.run([meso, "convert", "--engine", "implicit", *edges, "--spacing", spacing, document, mesh], check=True)
         draw(meso, mesh, picture, *words)
 
 
@@ -70,9 +76,12 @@ def main():
         document, pictures = HERE / f"documents/{name}.meso", HERE / "documents/pictures"
         if options.only not in name:
             continue
-        if options.exact:
+        if options.exact and name != "density_from_field":
             draw(options.meso, document, pictures / f"{name}.png")
-        twin(options.meso, document, spacing, pictures / f"{name}-implicit.png")
+        twin(options.meso, document, spacing, pictures / f"{name}-implicit.png", edges=["--sharp"])
+    for name, spacing in FIELDS.items():
+        if options.only in name:
+            twin(options.meso, HERE / f"implicit/{name}.meso", spacing, HERE / f"implicit/{name}.png")
 
 
 if __name__ == "__main__":
