@@ -23,8 +23,8 @@ SIZE = (480, 360)
 # Document, distance of samples, more words of the picture.
 CASES = [
     ("ibeam/ibeam", "0.4mm"),
-    ("disk/disk", "0.3mm", "--cut", "z=3mm"),
-    ("sphere/sphere", "0.3mm", "--cut", "y=1.6mm"),
+    ("disk/disk", "0.4mm", "--cut", "z=3mm"),
+    ("sphere/sphere", "0.5mm", "--cut", "y=1.6mm"),
     ("gear/gear", "0.2mm"),
     ("direction-beam/direction-beam", "0.3mm", "--cut", "x=0"),
 ]
