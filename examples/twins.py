@@ -69,7 +69,7 @@ def main():
     options = arguments.parse_args()
     for name, spacing, *words in CASES:
         if options.only in name:
-            twin(options.meso, HERE / f"{name}.meso", spacing, HERE / f"{name}-implicit.png", *words)
+            twin(options.meso, HERE / f"{name}.meso", spacing, HERE / f"{name}-implicit.png", *words, edges=["--sharp"])
     if options.statue and options.only in "statue":
         twin(options.meso, options.statue / "upright-statue-stl.meso", "0.4mm", HERE / "statue/statue-implicit.png", "--cut", "y=-4.8mm")
     for name, spacing in DOCUMENTS.items():
