@@ -34,6 +34,7 @@ DOCUMENTS = {
     "library_cells": "0.1mm", "list_of_places": "0.3mm", "offset_lattice": "0.1mm", "orient_along_vector": "0.2mm", "parameters": "0.3mm",
     "parts_of_parts": "0.2mm", "polar": "0.4mm", "radius_at_nodes": "0.1mm", "rotate_step_by_step": "0.25mm", "spherical": "1mm",
 }
+CUTS = {"parts_of_parts": ("--cut", "y=8mm")}
 # Cells that are functions have no exact picture.
 FIELDS = {
     "blended_cells": "0.4mm", "graded_density": "0.4mm", "growing_cells": "0.4mm", "gyroid_ball": "0.25mm", "gyroid_cone": "0.25mm",
@@ -77,8 +78,8 @@ def main():
         if options.only not in name:
             continue
         if options.exact and name != "density_from_field":
-            draw(options.meso, document, pictures / f"{name}.png")
-        twin(options.meso, document, spacing, pictures / f"{name}-implicit.png", edges=["--sharp"])
+            draw(options.meso, document, pictures / f"{name}.png", *CUTS.get(name, ()))
+        twin(options.meso, document, spacing, pictures / f"{name}-implicit.png", *CUTS.get(name, ()), edges=["--sharp"])
     for name, spacing in FIELDS.items():
         if options.only in name:
             twin(options.meso, HERE / f"implicit/{name}.meso", spacing, HERE / f"implicit/{name}.png")
