@@ -225,7 +225,10 @@ Attempt attempt(BOPAlgo_Operation kind, const Solids& objects, const Solids& too
   operation.SetRunParallel(true);
   operation.PerformWithFiller(filler, scope.Next());
   if (operation.HasErrors() || operation.Shape().IsNull()) return {{}, {}, "the pieces cannot be put together"};
-  Solids result = solids_of(operation.Shape());
+  TopoDS_Shape whole = operation.Shape();
+  BRepTools::RemoveInternals(
+      whole);  // a point where surfaces touch bounds nothing, and the mesher fails on two of them
+  Solids result = solids_of(whole);
   if (auto fault = fault_of(operation, kind, objects, tools, result)) return {{}, {}, *fault};
   return {std::move(result), images_of(objects, operation), {}};
 }

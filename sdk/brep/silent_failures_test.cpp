@@ -98,6 +98,25 @@ TEST_F(SilentFailures, BodiesThatTouchAFace) {
   EXPECT_GE(right_, 4);
 }
 
+TEST_F(SilentFailures, BallsThatTouchTwoFacesInPoints) {
+  // OpenCASCADE leaves the points as vertices within the face; its mesher then makes no triangles, and says nothing.
+  const double r = 1.79, height = 0.265;
+  const Shape box{BoxShape{{}, {2 * (r - height), 2 * r, 4.1}}};
+  const Shape clipped{BooleanShape{BooleanOperation::intersection, {ball({r - height, r, 2.05}, r), box}}};
+  const auto solids =
+      right_or_refused(clipped, 4 * pi / 3 * r * r * r - 2 * pi * height * height * (3 * r - height) / 3, 1e-6);
+  ASSERT_TRUE(solids);
+  for (const TopoDS_Shape& solid : *solids) {
+    BRepMesh_IncrementalMesh(solid, 0.05);
+    for (TopExp_Explorer it(solid, TopAbs_FACE); it.More(); it.Next()) {
+      TopLoc_Location location;
+      EXPECT_FALSE(BRep_Tool::Triangulation(TopoDS::Face(it.Current()), location).IsNull());
+      for (TopoDS_Iterator child(it.Current()); child.More(); child.Next())
+        EXPECT_EQ(child.Value().ShapeType(), TopAbs_WIRE);
+    }
+  }
+}
+
 TEST_F(SilentFailures, SliversBelowAFace) {
   for (const double wall : {1e-7, 1e-6, 3e-6, 1e-5, 1e-4, 1e-3}) {
     const Shape room{BoxShape{{1, 1, 1}, {8, 8, 9 - wall}}};

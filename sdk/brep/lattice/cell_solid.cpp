@@ -112,7 +112,9 @@ std::optional<TopoDS_Shape> cut_to_box(const TopoDS_Shape& whole, const CellShap
   if (common.HasErrors() || cut.HasErrors()) return {};
   const double before = volume_of(whole), inside = volume_of(common.Shape()), outside = volume_of(cut.Shape());
   if (contradicts(inside + outside, before, before, 1e-6)) return {};
-  return common.Shape();
+  TopoDS_Shape clipped = common.Shape();
+  BRepTools::RemoveInternals(clipped);  // points where a ball touches a wall bound nothing
+  return clipped;
 }
 
 /// Every corner and edge middle of a right result lies on the surface of the union, or within it on a wall.
