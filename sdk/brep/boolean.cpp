@@ -25,6 +25,7 @@ constexpr double edge_tolerance_mm = 1e-4;
 // Measured, see docs/architecture-cutters.md: 128 and 256 take as long, and 256 more memory.
 constexpr std::size_t slab_tools = 128;
 constexpr std::size_t points_each = 16;  ///< of a piece, looked at one by one
+constexpr std::size_t points_an_edge = 5;
 
 std::vector<Bnd_Box> boxes_of(const Solids& solids) {
   std::vector<Bnd_Box> boxes(solids.size());
@@ -122,6 +123,7 @@ class Pieces {
     for (std::size_t i = 0; i < owners_.size(); ++i) {
       const Owners& piece = owners_[i];
       const std::vector<Vec3> points = points_within(pieces_(static_cast<int>(i) + 1), points_each);
+      const std::vector<Vec3> edge_points = points_along_edges(pieces_(static_cast<int>(i) + 1), points_an_edge);
       for (std::size_t a = 0; a < arguments_.size(); ++a) {
         const auto is_beyond = [&](Vec3 p) { return boxes[a].IsOut(to_pnt(p)); };
         if (is_owner(piece, a) && std::ranges::any_of(points, is_beyond)) return true;
@@ -131,7 +133,20 @@ class Pieces {
           return classifiers[a].State() == (is_owner(piece, a) ? TopAbs_OUT : TopAbs_IN);
         });
         if (contradictions >= 2) return true;  // a single classification can fail by chance
+        if (!is_owner(piece, a) && reaches_into(edge_points, boxes[a], classifiers[a])) return true;
       }
+    }
+    return false;
+  }
+
+  /// Whether edges are within a body: they may lie on it, known as they are.
+  static bool reaches_into(const std::vector<Vec3>& edge_points, const Bnd_Box& box,
+                           BRepClass3d_SolidClassifier& classifier) {
+    int within = 0;
+    for (const Vec3 p : edge_points) {
+      if (box.IsOut(to_pnt(p))) continue;
+      classifier.Perform(to_pnt(p), 2 * edge_tolerance_mm);
+      if (classifier.State() == TopAbs_IN && ++within == 2) return true;
     }
     return false;
   }

@@ -56,7 +56,7 @@ class FaceMesher {
       if (is_plane[f]) geometry_.faces[f].mesh = between_loops(f);
     if (!is_closed()) return false;
     for (std::size_t f = 0; f < faces_.size(); ++f)
-      if (FaceTemplate& face = geometry_.faces[f]; !ellipsoids[f] && is_elementary(face.surface))
+      if (FaceTemplate& face = geometry_.faces[f]; !ellipsoids[f] && !std::holds_alternative<Plane>(face.surface))
         fit_triangles(face.mesh, to_geom(face.surface), {}, tolerance_.deflection_mm);
     return true;
   }
@@ -84,11 +84,6 @@ class FaceMesher {
         }
     }
     return sum == 0;
-  }
-
-  /// OpenCASCADE's triangles are up to three times as far off as it was asked for; feet on free forms take long.
-  static bool is_elementary(const Surface& surface) {
-    return !std::holds_alternative<Plane>(surface) && !std::holds_alternative<BSplineSurface>(surface);
   }
 
   static bool has_many_loops(const FaceTemplate& face) {

@@ -3,6 +3,7 @@
 
 #include <ShapeAnalysis_Surface.hxx>
 #include <map>
+#include <optional>
 #include <tuple>
 
 namespace meso::brep {
@@ -40,7 +41,12 @@ void halve(Triangulation& mesh, const Handle(Geom_Surface) & surface, const Mat3
   // Triangles that have nothing to do with the surface get no better.
   const std::size_t most_triangles = 8 * mesh.triangles.size() + 1000;
   const Handle(ShapeAnalysis_Surface) analysis = new ShapeAnalysis_Surface(surface);
-  const auto foot = [&](Vec3 p) { return to_vec(analysis->Value(analysis->ValueOfUV(to_pnt(p), 1e-7))); };
+  // On free forms a search begins at the last answer, and anew where that ends far off.
+  std::optional<gp_Pnt2d> last;
+  const auto foot = [&](Vec3 p, double near) {
+    last = last ? analysis->NextValueOfUV(*last, to_pnt(p), 1e-7, near) : analysis->ValueOfUV(to_pnt(p), 1e-7);
+    return to_vec(analysis->Value(*last));
+  };
   const auto place = [&](std::uint32_t i) { return place_of(mesh.points[i], lattice); };
   for (int pass = 0; pass < most_passes && mesh.triangles.size() < most_triangles; ++pass) {
     std::vector<bool> divided(mesh.triangles.size());
@@ -48,7 +54,8 @@ void halve(Triangulation& mesh, const Handle(Geom_Surface) & surface, const Mat3
     for (const auto& [segment, sides] : segments_of(mesh)) {
       if (sides.count != 2) continue;
       const Vec3 middle = 0.5 * (place(segment[0]) + place(segment[1]));
-      if (!wants(segment, norm(foot(middle) - middle))) continue;
+      const double near = 0.1 * norm(place(segment[1]) - place(segment[0]));
+      if (!wants(segment, norm(foot(middle, near) - middle))) continue;
       any = true;
       if (divided[sides.triangle[0]] || divided[sides.triangle[1]]) continue;  // in the next pass
       // A little towards the corners beside it: on a round border the middle's foot can be one of them.
@@ -56,7 +63,7 @@ void halve(Triangulation& mesh, const Handle(Geom_Surface) & surface, const Mat3
       for (const std::size_t t : sides.triangle)
         for (const std::uint32_t corner : mesh.triangles[t]) beside += place(corner);
       const auto fresh = static_cast<std::uint32_t>(mesh.points.size());
-      mesh.points.push_back({.point = foot(0.75 * middle + 0.125 * beside)});
+      mesh.points.push_back({.point = foot(0.75 * middle + 0.125 * beside, near)});
       for (const std::size_t t : sides.triangle) {
         divided[t] = true;
         std::array<std::uint32_t, 3> half = mesh.triangles[t];

@@ -52,4 +52,19 @@ std::vector<Vec3> points_within(const TopoDS_Shape& solid, std::size_t count) {
   return points;
 }
 
+std::vector<Vec3> points_along_edges(const TopoDS_Shape& shape, std::size_t each) {
+  std::vector<Vec3> points;
+  TopTools_IndexedMapOfShape edges;
+  TopExp::MapShapes(shape, TopAbs_EDGE, edges);
+  for (int e = 1; e <= edges.Extent(); ++e) {
+    const TopoDS_Edge& edge = TopoDS::Edge(edges(e));
+    if (BRep_Tool::Degenerated(edge)) continue;
+    const BRepAdaptor_Curve curve(edge);
+    const double first = curve.FirstParameter(), length = curve.LastParameter() - first;
+    for (std::size_t k = 1; k <= each; ++k)
+      points.push_back(to_vec(curve.Value(first + length * static_cast<double>(k) / static_cast<double>(each + 1))));
+  }
+  return points;
+}
+
 }  // namespace meso::brep

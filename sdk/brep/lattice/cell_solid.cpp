@@ -6,10 +6,13 @@
 
 #include "face_moments.hpp"
 #include "lattice/primitive_field.hpp"
+#include "point_within.hpp"
 #include "stop_watch.hpp"
 
 namespace meso::brep {
 namespace {
+
+constexpr std::size_t points_an_edge = 5;
 
 bool on_wall(double value, double low, double high, double tolerance) {
   return std::fabs(value - low) < tolerance || std::fabs(value - high) < tolerance;
@@ -93,7 +96,8 @@ double volume_of(const TopoDS_Shape& shape) {
 }
 
 /// Common and Cut from one intersection: what is inside and what is outside must add up to what was there.
-std::optional<TopoDS_Shape> cut_to_box(const TopoDS_Shape& whole, const CellShape& cell, const RunOptions& run) {
+std::optional<TopoDS_Shape> cut_to_box(const TopoDS_Shape& whole, const CellShape& cell, double fuzzy,
+                                       const RunOptions& run) {
   const Handle(StopWatch) watch = new StopWatch(run);
   const TopoDS_Shape box = BRepPrimAPI_MakeBox(to_pnt(cell.box.min), to_pnt(cell.box.max)).Solid();
   TopTools_ListOfShape arguments, wholes, boxes;
@@ -105,6 +109,7 @@ std::optional<TopoDS_Shape> cut_to_box(const TopoDS_Shape& whole, const CellShap
   filler.SetArguments(arguments);
   filler.SetNonDestructive(true);
   filler.SetRunParallel(true);
+  filler.SetFuzzyValue(fuzzy);
   filler.Perform(watch->Start());
   if (filler.HasErrors()) return {};
   BRepAlgoAPI_Common common(whole, box, filler);
@@ -112,6 +117,13 @@ std::optional<TopoDS_Shape> cut_to_box(const TopoDS_Shape& whole, const CellShap
   if (common.HasErrors() || cut.HasErrors()) return {};
   const double before = volume_of(whole), inside = volume_of(common.Shape()), outside = volume_of(cut.Shape());
   if (contradicts(inside + outside, before, before, 1e-6)) return {};
+  // Where a wall runs through a ball's centre but for 1e-7 of the cell, nothing is divided and all sums hold.
+  const auto is_in_box = [&](Vec3 p) {
+    for (std::size_t i = 0; i < 3; ++i)
+      if (p[i] < cell.box.min[i] + cell.tolerance() || p[i] > cell.box.max[i] - cell.tolerance()) return false;
+    return true;
+  };
+  if (std::ranges::any_of(points_along_edges(cut.Shape(), points_an_edge), is_in_box)) return {};
   TopoDS_Shape clipped = common.Shape();
   BRepTools::RemoveInternals(clipped);  // points where a ball touches a wall bound nothing
   return clipped;
@@ -286,7 +298,9 @@ std::optional<TopoDS_Shape> solid_in_box(const CellShape& cell, const Reach& rea
   try {
     const double fuzzy = std::ranges::any_of(primitives, tapers) ? cell.tolerance() / 4 : 0;
     const TopoDS_Shape whole = fused(solids, fuzzy, run);
-    const std::optional<TopoDS_Shape> inside = whole.IsNull() ? std::nullopt : cut_to_box(whole, cell, run);
+    std::optional<TopoDS_Shape> inside;
+    for (const double wider : {0.0, cell.tolerance() / 2})
+      if (!inside && !whole.IsNull()) inside = cut_to_box(whole, cell, wider, run);
     if (!inside) {
       fault = "the unit cell cannot be cut to its box";
     } else if (!primitives.empty()) {
