@@ -109,6 +109,35 @@ TEST(Gaps, TrianglesOfABallThatAStrutLeavesBesideThePole) {
   EXPECT_LT(gaps.triangle_mm, 3 * 0.0155);
 }
 
+// Of a free form OpenCASCADE's triangles were almost five deflections off.
+TEST(Gaps, TrianglesOfAStretchedCone) {
+  gp_GTrsf stretch;
+  stretch.SetVectorialPart(gp_Mat(1, 0, 0, 0, 1, 0, 0, 0, 1.4));
+  const TopoDS_Shape cone = BRepPrimAPI_MakeCone(gp_Ax2(gp_Pnt(0, 0, -1.4687), gp::DZ()), 4.75, 0.916, 5.9687).Solid();
+  const TopoDS_Shape without = BRepPrimAPI_MakeCone(gp_Ax2(gp_Pnt(0, 0, -4), gp::DZ()), 4, 0.916, 8.5).Solid();
+  const TopoDS_Shape free_form =
+      BRepBuilderAPI_GTransform(BRepAlgoAPI_Cut(cone, without).Shape(), stretch, Standard_True).Shape();
+  const auto body = meshed(free_form, 0.025);
+  ASSERT_TRUE(body);
+  const Gaps gaps = measure_gaps(*body);
+  EXPECT_LT(gaps.triangle_mm, 1.5 * 0.025);
+  EXPECT_NEAR(summed_volume(*body) + gaps.triangles_mm3, measure(*body).volume, 0.1 * gaps.triangles_abs_mm3);
+}
+
+// What faces do not close by, here 1e-7 mm2, moves a volume by no more than that times the body's size.
+TEST(Gaps, FarFromTheOriginTheyCountForNoMore) {
+  auto body = meshed(BRepPrimAPI_MakeBox(gp_Pnt(1e4, -1e4, 1e4), 2, 2, 2).Solid());
+  ASSERT_TRUE(body);
+  Template geometry = *body->solids[0].outer.geometry;
+  for (FaceTemplate& face : geometry.faces) {
+    if (face.box.min.x != face.box.max.x) continue;
+    face.moments.vector_area.x += 1e-7;
+    face.moments.volume_moment.x += 1e-7 * face.box.min.x;
+  }
+  body->solids[0].outer.geometry = std::make_shared<Template>(geometry);
+  EXPECT_NEAR(measure(*body).volume, 8, 1e-6);
+}
+
 // OpenCASCADE reads a curve that goes round as periodic; made plain, its knots go on beyond both ends.
 TEST(Gaps, ACurveThatGoesRoundEndsAtItsFirstAndLastKnot) {
   TColgp_Array1OfPnt poles(1, 4);

@@ -19,7 +19,7 @@ struct Sum3 {
 
 struct ShellMoments {
   long double area = 0;
-  Sum3 volume, centroid;
+  Sum3 volume, centroid, vector_area;
   std::uint64_t faces = 0;
 
   // p -> p + t turns p_i n_i into itself + t_i n_i, and p_i^2/2 n_i into itself + t_i p_i n_i + t_i^2/2 n_i.
@@ -27,6 +27,7 @@ struct ShellMoments {
     area += m.area;
     const Vec3 &v = m.volume_moment, &a = m.vector_area, &c = m.centroid_moment;
     volume.add(v.x + t.x * a.x, v.y + t.y * a.y, v.z + t.z * a.z);
+    vector_area.add(a.x, a.y, a.z);
     centroid.add(c.x + t.x * (v.x + t.x / 2 * a.x), c.y + t.y * (v.y + t.y / 2 * a.y),
                  c.z + t.z * (v.z + t.z / 2 * a.z));
     ++faces;
@@ -61,8 +62,9 @@ Measures measure(const Body& body) {
       box.extend(moved.max);
     });
     const double scale = std::cbrt(determinant(shell.placement.linear));
+    // About the shell's middle: what faces do not close by counts for no more where the shell is far from the origin.
     const Vec3 v = moments.volume.value();
-    const double volume = (v.x + v.y + v.z) / 3;
+    const double volume = (v.x + v.y + v.z - dot(0.5 * (box.min + box.max), moments.vector_area.value())) / 3;
     // The centroid of the shell alone is volume-weighted before it is placed: placement * (m / v) * v s^3.
     total.volume += volume * scale * scale * scale;
     total.area += static_cast<double>(moments.area) * scale * scale;

@@ -117,6 +117,18 @@ TEST_F(SilentFailures, BallsThatTouchTwoFacesInPoints) {
   }
 }
 
+TEST_F(SilentFailures, FacesBesideTheCentreOfABall) {
+  // A strut along a space diagonal ends in a ball, and two faces pass its centre at 3e-7: OpenCASCADE divides nothing,
+  // and what reaches over both faces is lost. Beyond the ball's equator a trihedral eighth, before it a piece of the
+  // strut, whose height is linear in the disc's coordinates.
+  const double r = 0.4864, beside = 3.4e-7;
+  const Shape strut = united({{CylinderShape{{-2, -2, -2}, {0, 0, 0}, r}}, ball({}, r)});
+  const Shape corner{BoxShape{{-3, -beside, -3}, {6, 3, 3 + beside}}};
+  right_or_refused({BooleanShape{BooleanOperation::intersection, {strut, corner}}},
+                   r * r * r * (pi / 6 + std::sqrt(6.0) / 3), 2e-6);
+  EXPECT_EQ(right_ + refused_, 1);
+}
+
 TEST_F(SilentFailures, SliversBelowAFace) {
   for (const double wall : {1e-7, 1e-6, 3e-6, 1e-5, 1e-4, 1e-3}) {
     const Shape room{BoxShape{{1, 1, 1}, {8, 8, 9 - wall}}};

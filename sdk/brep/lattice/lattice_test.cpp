@@ -119,6 +119,25 @@ TEST(Lattice, APeriodThatIsNotDyadic) {
   EXPECT_NEAR(r.measures.volume / (18 * bcc_volume({a, a, a}, {0.1 * a, 0.18 * a})), 1, 1e-8);
 }
 
+TEST(Lattice, WallsBesideTheCentresOfBalls) {
+  // Nodes written with six digits: the walls pass 3e-7 beside them, where OpenCASCADE divides nothing.
+  const double a = 10.0 / 3, r = 0.4864;
+  const Vec3 size{a, a, a}, corner{3.333333, 3.333333, 3.333333}, centre{1.666667, 1.666667, 1.666667};
+  LatticeCell cell{.box = {{0, 0, 0}, size}, .primitives = {}};
+  for (const Vec3 p : {Vec3{}, centre, corner}) cell.primitives.push_back(Ball{p, r});
+  cell.primitives.push_back(Frustum{{}, centre, r, r});
+  cell.primitives.push_back(Frustum{centre, corner, r, r});
+  const Result result = realise(cell, block(2, 2, 1));
+  // Four capsules, less what sticks out. Of a capsule along a space diagonal, beyond one wall through its end's centre,
+  // beyond two, and beyond three: part of a half ball (Girard), and of the strut's end (linear over its disc).
+  const double angle = std::acos(1 / std::sqrt(3.0));
+  const double one = 2.0 / 3 * (pi - angle) + 2 * std::sqrt(2.0) / 3;
+  const double two = (1.5 * pi - 2 * angle) / 3 + std::sqrt(2.0) / 3 * (2 - std::sqrt(3.0)), three = pi / 6;
+  const double capsule = pi * r * r * std::sqrt(3.0) * a + 4 * pi / 3 * r * r * r;
+  const double truth = 4 * capsule - (16 * one - 10 * two + 2 * three) * r * r * r;
+  EXPECT_NEAR(result.measures.volume / truth, 1, 1e-5);
+}
+
 TEST(Lattice, AnisotropicBoxes) {
   const Vec3 size{5, 4, 6};
   const Result inside = realise(cubic(size, 0.5, 0.9), block(2, 3, 2));
