@@ -123,7 +123,6 @@ class Pieces {
     for (std::size_t i = 0; i < owners_.size(); ++i) {
       const Owners& piece = owners_[i];
       const std::vector<Vec3> points = points_within(pieces_(static_cast<int>(i) + 1), points_each);
-      const std::vector<Vec3> edge_points = points_along_edges(pieces_(static_cast<int>(i) + 1), points_an_edge);
       for (std::size_t a = 0; a < arguments_.size(); ++a) {
         const auto is_beyond = [&](Vec3 p) { return boxes[a].IsOut(to_pnt(p)); };
         if (is_owner(piece, a) && std::ranges::any_of(points, is_beyond)) return true;
@@ -133,20 +132,34 @@ class Pieces {
           return classifiers[a].State() == (is_owner(piece, a) ? TopAbs_OUT : TopAbs_IN);
         });
         if (contradictions >= 2) return true;  // a single classification can fail by chance
-        if (!is_owner(piece, a) && reaches_into(edge_points, boxes[a], classifiers[a])) return true;
       }
     }
-    return false;
+    return reaches_into(boxes, classifiers);
   }
 
-  /// Whether edges are within a body: they may lie on it, known as they are.
-  static bool reaches_into(const std::vector<Vec3>& edge_points, const Bnd_Box& box,
-                           BRepClass3d_SolidClassifier& classifier) {
-    int within = 0;
-    for (const Vec3 p : edge_points) {
-      if (box.IsOut(to_pnt(p))) continue;
-      classifier.Perform(to_pnt(p), 2 * edge_tolerance_mm);
-      if (classifier.State() == TopAbs_IN && ++within == 2) return true;
+  /// Whether an edge is within an argument that none of its pieces comes from: a piece has it that should have been
+  /// divided, and few of its faces' middles may tell. Edges may lie on an argument, known as they are.
+  [[nodiscard]] bool reaches_into(const std::vector<Bnd_Box>& boxes,
+                                  std::deque<BRepClass3d_SolidClassifier>& classifiers) const {
+    TopTools_IndexedMapOfShape edges;
+    std::vector<std::vector<std::size_t>> owners;  // per edge: the arguments of all its pieces
+    for (std::size_t i = 0; i < owners_.size(); ++i)
+      for (TopExp_Explorer it(pieces_(static_cast<int>(i) + 1), TopAbs_EDGE); it.More(); it.Next()) {
+        const auto e = static_cast<std::size_t>(edges.Add(it.Current()));
+        if (e > owners.size()) owners.emplace_back();
+        owners[e - 1].insert(owners[e - 1].end(), owners_[i].arguments.begin(), owners_[i].arguments.end());
+      }
+    for (std::size_t e = 0; e < owners.size(); ++e) {
+      const std::vector<Vec3> points = points_along_edges(edges(static_cast<int>(e) + 1), points_an_edge);
+      for (std::size_t a = 0; a < boxes.size(); ++a) {
+        if (std::ranges::count(owners[e], a) > 0) continue;
+        const auto within = std::ranges::count_if(points, [&](Vec3 p) {
+          if (boxes[a].IsOut(to_pnt(p))) return false;
+          classifiers[a].Perform(to_pnt(p), 2 * edge_tolerance_mm);
+          return classifiers[a].State() == TopAbs_IN;
+        });
+        if (within >= 2) return true;
+      }
     }
     return false;
   }
