@@ -2,9 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Can Gmsh fill a STEP file with tetrahedra? Runs the program `gmsh`, which is never linked.
 
-usage: check_gmsh.py FILE.step [VOLUME_MM3 [RELATIVE_TOLERANCE [SIZE_MM]]]
+usage: check_gmsh.py FILE.step [VOLUME_MM3 [RELATIVE_TOLERANCE [SIZE_MM [ROUND]]]]
 Prints one JSON line; exit 0 if all solids are filled (and the tetrahedra have the volume, by default to 3 %: they are
-chords of round faces), 1 if not, 77 without Gmsh. SIZE_MM: the largest edge.
+chords of round faces), 1 if not, 77 without Gmsh. SIZE_MM: the largest edge, 0: as Gmsh likes. ROUND: edges around a circle.
 """
 import json
 import os
@@ -45,10 +45,11 @@ def main():
         print("Gmsh is not installed: skipped")
         sys.exit(77)
     path = sys.argv[1]
-    size = ["-clmax", sys.argv[4]] if len(sys.argv) > 4 else []
+    size = ["-clmax", sys.argv[4]] if len(sys.argv) > 4 and float(sys.argv[4]) > 0 else []
+    around = sys.argv[5] if len(sys.argv) > 5 else "12"
     with tempfile.TemporaryDirectory() as folder:
         mesh = pathlib.Path(folder) / "solid.msh"
-        done = subprocess.run(["gmsh", "-3", "-format", "msh2", "-setnumber", "Mesh.MeshSizeFromCurvature", "12", *size, "-o", str(mesh), path],
+        done = subprocess.run(["gmsh", "-3", "-format", "msh2", "-setnumber", "Mesh.MeshSizeFromCurvature", around, *size, "-o", str(mesh), path],
                               capture_output=True, text=True, env={**os.environ, "LC_ALL": "C"})
         errors = [line for line in done.stdout.splitlines() + done.stderr.splitlines() if line.startswith("Error")]
         count, volume = volume_of(mesh) if mesh.exists() else (0, 0.0)

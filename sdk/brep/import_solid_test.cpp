@@ -117,6 +117,8 @@ TEST_F(ImportSolids, FilesThatAreNotStep) {
   expect_refused(written("half.step", step.substr(0, step.size() / 2)), Code::import_unreadable);
   expect_refused(written("most.step", step.substr(0, step.size() * 95 / 100)), Code::import_unreadable);
   expect_refused(written("garbage.stp", "not a step file"), Code::import_unreadable);
+  expect_refused(written("header.step", step.substr(0, step.find("DATA;")) + "DATA;\nENDSEC;\nEND-ISO-10303-21;\n"),
+                 Code::import_unreadable);
   expect_refused(folder_ / "missing.step", Code::import_unreadable);
   expect_refused(written("nan.step", replaced(step, "CARTESIAN_POINT('',(", "CARTESIAN_POINT('',(NAN,")),
                  Code::import_unreadable);
@@ -150,6 +152,31 @@ TEST_F(ImportSolids, StepThatReferencesItself) {
     EXPECT_FALSE(solids) << entity;
     EXPECT_TRUE(sink_.has_errors());
   }
+}
+
+TEST_F(ImportSolids, StepWithBytesOverwritten) {
+  // Sixty bytes anywhere: OpenCASCADE tells of success, and gives nothing or an open shell.
+  const std::string step = text_of(beam);
+  int refused = 0;
+  std::uint32_t state = 7;
+  const auto next = [&] { return (state = state * 1664525u + 1013904223u) >> 8; };
+  for (int n = 0; n < 12; ++n) {
+    std::string broken = step;
+    const std::size_t data = step.find("DATA;") + 6;
+    for (int k = 0; k < 60; ++k) broken[data + next() % (step.size() - data)] = static_cast<char>('!' + next() % 90);
+    sink_ = DiagnosticSink();
+    const auto solids = imported({.file = written("broken.step", broken)});
+    if (!solids) {
+      EXPECT_TRUE(sink_.has_errors()) << n;
+      ++refused;
+      continue;
+    }
+    for (const TopoDS_Shape& solid : *solids) {
+      EXPECT_EQ(edge_uses(solid).free, 0u) << n;
+      EXPECT_GT(volume_of(solid), 0) << n;
+    }
+  }
+  EXPECT_GE(refused, 6);
 }
 
 TEST_F(ImportSolids, StepWithNumbersBeyondRange) {
