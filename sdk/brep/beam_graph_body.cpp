@@ -5,6 +5,7 @@
 #include <cmath>
 #include <memory>
 #include <numbers>
+#include <tuple>
 
 #include "beam_graph_rings.hpp"
 #include "beam_graph_sphere.hpp"
@@ -46,7 +47,10 @@ double ball_volume(double radius) { return 4 * pi / 3 * radius * radius * radius
 class BeamBody {
  public:
   BeamBody(const Joints& joints, const LatticeOptions& options)
-      : joints_(joints), graph_(joints.graph), options_(options), rings_(joints, *geometry_) {}
+      : joints_(joints),
+        graph_(joints.graph),
+        options_(options),
+        rings_(joints, cuts_of(joints, options), *geometry_) {}
 
   /// False: the run was to stop.
   bool make_faces() {
@@ -97,6 +101,19 @@ class BeamBody {
   }
 
  private:
+  static std::vector<BallCuts> cuts_of(const Joints& joints, const LatticeOptions& options) {
+    std::vector<BallCuts> cuts(joints.leaving.size());
+    const auto divide = [&](std::size_t, std::size_t n) {
+      if (joints.is_straight[n]) return true;
+      std::vector<BallCap> caps;
+      for (const Leaving l : joints.leaving[n]) caps.push_back({joints.direction(l), joints.end(l).angle});
+      cuts[n] = cuts_between(caps);
+      return true;
+    };
+    (void)in_parallel(cuts.size(), options.run, divide);  // make_faces() asks again whether to stop
+    return cuts;
+  }
+
   [[nodiscard]] Vec3 at(std::uint32_t node) const { return graph_.nodes[node].position; }
 
   void add(FaceTemplate face, std::uint32_t strut) {
@@ -139,7 +156,9 @@ class BeamBody {
     std::vector<Coedge> coedges;  // by id of the arc
     const std::vector<SphereCircle> circles = circles_of(node, coedges);
     for (const std::vector<SphereLoop>& loops : sphere_faces(circles)) {
-      FaceTemplate face{.surface = SphereSurface{clear_axes(centre, loops, axes_), radius}};
+      const bool is_cut = !rings_.cuts(node).empty();
+      const AxisFrame axes = is_cut ? axes_across(centre, loops[0]) : clear_axes(centre, loops, axes_);
+      FaceTemplate face{.surface = SphereSurface{axes, radius}};
       for (const SphereLoop& loop : loops) {
         auto& uses = face.loops.emplace_back();
         for (const SphereArc& arc : loop) uses.push_back(coedges[arc.id]);
@@ -172,44 +191,62 @@ class BeamBody {
     return {at(node) - Vec3{r, r, r}, at(node) + Vec3{r, r, r}};
   }
 
-  /// Clockwise about the struts: against the faces of these.
+  /// Clockwise about the struts: against the faces of these. Behind them the cuts.
   std::vector<SphereCircle> circles_of(std::uint32_t node, std::vector<Coedge>& coedges) const {
-    struct Start {
-      std::uint32_t vertex = 0, circle = 0, arc = 0;
-    };
-    std::vector<Start> contacts;
     std::vector<SphereCircle> circles;
-    std::vector<std::vector<std::uint32_t>> ends;  // vertices, where others touch
-    constexpr std::uint32_t no_contact = ~std::uint32_t{0};
+    std::vector<ArcEnds> ends;
+    const auto seen = [&](std::uint32_t vertex) { return unit(geometry_->vertices[vertex] - at(node)); };
+    const auto add = [&](std::array<std::uint32_t, 2> vertex, Vec3 axis, double angle, bool is_whole, Coedge coedge) {
+      circles.back().arcs.push_back({.axis = axis,
+                                     .angle = angle,
+                                     .from = seen(vertex[0]),
+                                     .to = seen(vertex[1]),
+                                     .is_whole = is_whole,
+                                     .id = static_cast<std::uint32_t>(coedges.size())});
+      coedges.push_back(coedge);
+      ends.push_back({vertex, static_cast<std::uint32_t>(circles.size()) - 1,
+                      static_cast<std::uint32_t>(circles.back().arcs.size()) - 1});
+    };
     for (const Leaving l : joints_.leaving[node]) {
       const Ring& ring = rings_.ring(l);
       const auto count = static_cast<std::uint32_t>(ring.marks.size());
       const bool forward = !rings_.use(l).forward;
-      const auto number = static_cast<std::uint32_t>(circles.size());
-      SphereCircle& circle = circles.emplace_back();
-      ends.emplace_back();
+      circles.emplace_back();
       for (std::uint32_t i = 0; i < count; ++i) {
         const std::uint32_t k = forward ? i : (count - i) % count,
                             next = forward ? (k + 1) % count : (k + count - 1) % count;
-        const Ring::Mark &from = ring.marks[k], &to = ring.marks[next];
-        circle.arcs.push_back({.axis = joints_.direction(l),
-                               .angle = joints_.end(l).angle,
-                               .from = unit(geometry_->vertices[from.vertex] - at(node)),
-                               .to = unit(geometry_->vertices[to.vertex] - at(node)),
-                               .is_whole = count == 1,
-                               .turns_back = to.is_contact,
-                               .id = static_cast<std::uint32_t>(coedges.size())});
-        coedges.push_back({.edge = ring.first_edge + (forward ? k : next), .reversed = !forward});
-        circle.next.push_back({number, (i + 1) % count});
-        ends.back().push_back(to.is_contact ? to.vertex : no_contact);
-        if (from.is_contact) contacts.push_back({from.vertex, number, i});
+        add({ring.marks[k].vertex, ring.marks[next].vertex}, joints_.direction(l), joints_.end(l).angle, count == 1,
+            {.edge = ring.first_edge + (forward ? k : next), .reversed = !forward});
       }
     }
-    for (std::uint32_t c = 0; c < circles.size(); ++c)
-      for (std::size_t a = 0; a < ends[c].size(); ++a)
-        for (const Start& start : contacts)
-          if (start.vertex == ends[c][a] && start.circle != c) circles[c].next[a] = {start.circle, start.arc};
+    for (const CutEdge& cut : rings_.cuts(node)) {
+      circles.emplace_back();
+      const Vec3 axis = unit(cross(seen(cut.vertex[1]), seen(cut.vertex[0])));
+      add(cut.vertex, axis, pi / 2, false, {.edge = cut.edge});
+      add({cut.vertex[1], cut.vertex[0]}, -axis, pi / 2, false, {.edge = cut.edge, .reversed = true});
+    }
+    go_on(circles, ends);
     return circles;
+  }
+
+  struct ArcEnds {
+    std::array<std::uint32_t, 2> vertex{};
+    std::uint32_t circle = 0, arc = 0;
+  };
+  /// From the end of each arc to the one that begins there and turns most to the left, but not back along a cut.
+  static void go_on(std::vector<SphereCircle>& circles, const std::vector<ArcEnds>& ends) {
+    for (const ArcEnds& from : ends) {
+      const SphereArc& arc = circles[from.circle].arcs[from.arc];
+      std::array<std::uint32_t, 2> next{from.circle, from.arc};
+      double most = -4;  // less than any turn
+      for (const ArcEnds& to : ends) {
+        const bool is_way_back = to.circle == from.circle && to.vertex[1] == from.vertex[0] && arc.angle == pi / 2;
+        if (to.vertex[0] != from.vertex[1] || is_way_back) continue;
+        const double turn = turn_between(arc, circles[to.circle].arcs[to.arc]);
+        if (turn > most) std::tie(next, most) = std::pair(std::array{to.circle, to.arc}, turn);
+      }
+      circles[from.circle].next.push_back(next);
+    }
   }
 
   /// No strut ends there: the sphere with its own seam and poles.

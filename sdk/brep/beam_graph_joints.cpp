@@ -11,7 +11,6 @@
 namespace meso::brep {
 namespace {
 
-constexpr double touch = 1e-7;      // radians between circles that are taken to touch
 constexpr double least_gap = 1e-9;  // millimetres between surfaces that keep apart
 
 std::string place(Vec3 p) {
@@ -129,7 +128,7 @@ class JointFinder {
   bool settle_balls(bool& changed) {
     for (std::uint32_t n = 0; n < joints_.graph.nodes.size(); ++n) {
       double& ball = joints_.graph.nodes[n].radius;
-      if (gap_at(n, ball) >= -touch) continue;
+      if (gap_at(n, ball) >= -touching_gap) continue;
       double low = ball, high = ball * (1 + equal_radii);
       if (changed || gap_at(n, high) < 0)
         return refuse("struts at the node " + place(at(n)) + " meet beyond its ball of radius " + format_number(ball) +
@@ -154,10 +153,10 @@ class JointFinder {
           const Leaving a = leaving[i], b = leaving[j];
           const double between = angle_between(joints_.direction(a), joints_.direction(b));
           const double gap = between - joints_.end(a).angle - joints_.end(b).angle;
-          if (gap > touch) continue;
+          if (gap > touching_gap) continue;
           const bool is_contact = joints_.is_swallowed[a / 2] || joints_.is_swallowed[b / 2];
           if (is_contact) return refuse("three balls meet near " + place(at(n)));
-          if (between > std::numbers::pi - 10 * touch)
+          if (between > std::numbers::pi - 10 * touching_gap)
             joints_.is_straight[n] = true;  // there is no third one
           else
             joints_.touching.push_back({std::min(a, b), std::max(a, b)});
@@ -215,7 +214,7 @@ class JointFinder {
     for (const Leaving l : {a, b}) {
       const StrutEnd& far = joints_.end(l ^ 1u);
       const double along = length_of(joints_.graph, joints_.graph.struts[l / 2]) - far.along;
-      if (std::atan2(far.radius, along) <= joints_.end(l).angle + std::max(0.0, gap) / 2 + touch) continue;
+      if (std::atan2(far.radius, along) <= joints_.end(l).angle + std::max(0.0, gap) / 2 + touching_gap) continue;
       return refuse("two struts that grow thicker away from the node " + place(at(joints_.node(l))) + " meet");
     }
     return true;

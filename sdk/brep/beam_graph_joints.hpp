@@ -43,6 +43,9 @@ struct Joints {
 /// Empty, and why, if struts or balls meet in other ways. Balls that are too small by `equal_radii` are made larger.
 [[nodiscard]] std::optional<Joints> joints_of(BeamGraph graph, SnappedRadii& snapped, std::string& why);
 
+/// Circles that are as close as that touch.
+inline constexpr double touching_gap = 1e-7;  // radians
+
 /// The angle between two unit vectors, exact also where it is small.
 [[nodiscard]] double angle_between(Vec3 a, Vec3 b);
 

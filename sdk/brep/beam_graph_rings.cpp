@@ -10,6 +10,7 @@ namespace meso::brep {
 namespace {
 
 constexpr double pi = std::numbers::pi;
+constexpr double same_vertex = 1e-7;  // millimetres
 
 Vec3 unit(Vec3 v) { return v / norm(v); }
 Vec3 across(Vec3 v) { return unit(cross(v, std::fabs(v.x) < 0.6 ? Vec3{1, 0, 0} : Vec3{0, 1, 0})); }
@@ -40,17 +41,35 @@ double widest_gap(std::vector<double> turns) {
 
 }  // namespace
 
-Rings::Rings(const Joints& joints, Template& geometry) {
+Rings::Rings(const Joints& joints, const std::vector<BallCuts>& cuts, Template& geometry) {
   make_rings(joints);
   mark_contacts(joints, geometry);
+  mark_cuts(joints, cuts, geometry);
   mark_seams(joints, geometry);
   make_edges(geometry);
+  add_seams(joints, geometry);
+  add_cuts(joints, geometry);
+}
+
+void Rings::add_seams(const Joints& joints, Template& geometry) {
   for (std::uint32_t s = 0; s < seams_.size(); ++s) {
     if (joints.is_swallowed[s]) continue;
     Seam& seam = seams_[s];
     seam.edge = static_cast<std::uint32_t>(geometry.edges.size());
     const Vec3 from = geometry.vertices[seam.vertex[0]], to = geometry.vertices[seam.vertex[1]];
     geometry.edges.push_back({.curve = Line{from, unit(to - from)}, .vertex = seam.vertex});
+  }
+}
+
+void Rings::add_cuts(const Joints& joints, Template& geometry) {
+  for (std::uint32_t n = 0; n < cuts_.size(); ++n) {
+    const BeamGraph::Node& node = joints.graph.nodes[n];
+    for (CutEdge& cut : cuts_[n]) {
+      const Vec3 x = unit(geometry.vertices[cut.vertex[0]] - node.position);
+      const Vec3 z = unit(cross(x, geometry.vertices[cut.vertex[1]] - node.position));
+      cut.edge = static_cast<std::uint32_t>(geometry.edges.size());
+      geometry.edges.push_back({.curve = Circle{{node.position, z, x}, node.radius}, .vertex = cut.vertex});
+    }
   }
 }
 
@@ -76,7 +95,10 @@ void Rings::make_rings(const Joints& joints) {
   }
 }
 
+/// A vertex that is there already is taken: two balls that meet may both divide their circle in it.
 std::uint32_t Rings::mark(Leaving l, Vec3 p, bool is_contact, Template& geometry) {
+  for (const Ring::Mark& m : rings_[use_[l].ring].marks)
+    if (norm(geometry.vertices[m.vertex] - p) < same_vertex) return m.vertex;
   geometry.vertices.push_back(p);
   const auto vertex = static_cast<std::uint32_t>(geometry.vertices.size() - 1);
   mark(l, p, vertex, is_contact);
@@ -98,6 +120,33 @@ void Rings::mark_contacts(const Joints& joints, Template& geometry) {
     const BeamGraph::Node& node = joints.graph.nodes[joints.node(a)];
     const std::uint32_t vertex = mark(a, node.position + node.radius * p, true, geometry);
     mark(b, geometry.vertices[vertex], vertex, true);
+  }
+}
+
+void Rings::mark_cuts(const Joints& joints, const std::vector<BallCuts>& cuts, Template& geometry) {
+  cuts_.resize(cuts.size());
+  for (std::uint32_t n = 0; n < cuts.size(); ++n) {
+    const BeamGraph::Node& node = joints.graph.nodes[n];
+    const auto& leaving = joints.leaving[n];
+    const auto first_point = static_cast<std::uint32_t>(geometry.vertices.size());
+    for (const Vec3& p : cuts[n].points) geometry.vertices.push_back(node.position + node.radius * p);
+    const auto direction = [&](std::uint32_t site) {
+      return site < leaving.size() ? joints.direction(leaving[site]) : cuts[n].points[site - leaving.size()];
+    };
+    for (const BallCuts::Cut& cut : cuts[n].cuts) {
+      CutEdge& added = cuts_[n].emplace_back();
+      for (const std::size_t end : {0u, 1u}) {
+        const std::uint32_t site = cut[end];
+        if (site >= leaving.size()) {
+          added.vertex[end] = first_point + site - static_cast<std::uint32_t>(leaving.size());
+          continue;
+        }
+        const Ring& ring = rings_[use_[leaving[site]].ring];
+        const Vec3 axis = direction(site), way = direction(cut[1 - end]);
+        const Vec3 p = ring.frame.origin + ring.radius * unit(way - dot(way, axis) * axis);
+        added.vertex[end] = mark(leaving[site], p, false, geometry);
+      }
+    }
   }
 }
 

@@ -161,16 +161,24 @@ std::vector<std::vector<SphereLoop>> sphere_faces(const std::vector<SphereCircle
   return FaceFinder(circles).faces();
 }
 
+// Where circles touch, the way goes back: the turn is pi, never -pi.
+double turn_between(const SphereArc& arc, const SphereArc& next) {
+  const Vec3 before = cross(arc.to, arc.axis), after = cross(next.from, next.axis);
+  const double turn = std::atan2(dot(arc.to, cross(before, after)), dot(before, after));
+  return turn < 1e-4 - pi ? turn + 2 * pi : turn;
+}
+
 // On the unit sphere n_i, n_i^2 - 1/3 and n_i^3 - 3/5 n_i are eigenfunctions of the Laplacian (-2, -6, -12), so their
 // integrals are those of their normal derivatives along the boundary; the area is that of Gauss and Bonnet.
 FaceMoments sphere_moments(Vec3 centre, double radius, const std::vector<SphereLoop>& loops) {
   BoundarySums sums;
   double area = 2 * pi * (2 - static_cast<double>(loops.size()));
   for (const SphereLoop& loop : loops)
-    for (const SphereArc& arc : loop) {
+    for (std::size_t a = 0; a < loop.size(); ++a) {
+      const SphereArc& arc = loop[a];
       const double sweep = sweep_of(arc);
       add_arc(arc, sweep, sums);
-      area += std::cos(arc.angle) * sweep - (arc.turns_back ? pi : 0);
+      area += std::cos(arc.angle) * sweep - turn_between(arc, loop[(a + 1) % loop.size()]);
     }
   FaceMoments moments{.area = radius * radius * area};
   for (std::size_t i = 0; i < 3; ++i) {
@@ -209,6 +217,12 @@ AxisFrame clear_axes(Vec3 centre, const std::vector<SphereLoop>& loops, AxisFram
   }
   best.origin = centre;
   return hint = best;
+}
+
+AxisFrame axes_across(Vec3 centre, const SphereLoop& loop) {
+  Vec3 area;
+  for (const SphereArc& arc : loop) area += cross(arc.from, arc.to);
+  return {centre, across(area), -unit(area)};
 }
 
 }  // namespace meso::brep
