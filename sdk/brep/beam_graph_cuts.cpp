@@ -3,10 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numbers>
 #include <tuple>
-
-#include "beam_graph_joints.hpp"
 
 namespace meso::brep {
 namespace {
@@ -90,13 +89,24 @@ class CutGraph {
       for (std::uint32_t a = 0; a < b; ++a) {
         const double gap = gap_of(a, b);
         if (gap >= longest_cut || angle_between(sites_[a].axis, sites_[b].axis) > pi - near_gap) continue;
-        wanted.emplace_back(std::llround(gap * 1e9), Edge{{a, b}, gap, {azimuth(a, b), azimuth(b, a)}});
+        wanted.emplace_back(std::llround(gap * 1e9), Edge{{a, b}, gap});
       }
     std::ranges::stable_sort(wanted, {}, [](const auto& w) { return std::get<0>(w); });
-    for (const auto& [order, edge] : wanted)
-      if (passes_caps(edge) && std::ranges::none_of(edges_, [&](const Edge& e) { return cross_each_other(e, edge); }))
-        edges_.push_back(edge);
+    for (auto& [order, edge] : wanted) {
+      if (!passes_caps(edge) || std::ranges::any_of(edges_, [&](const Edge& e) { return cross_each_other(e, edge); }))
+        continue;
+      edge.azimuth = {azimuth(edge.site[0], edge.site[1]), azimuth(edge.site[1], edge.site[0])};
+      edges_.push_back(edge);
+    }
     is_dropped_.assign(edges_.size(), false);
+    sort_around_sites();
+  }
+
+  void sort_around_sites() {
+    around_.assign(sites_.size(), {});
+    for (std::uint32_t half = 0; half < 2 * edges_.size(); ++half) around_[start(half)].push_back(half);
+    for (auto& halves : around_)
+      std::ranges::sort(halves, std::greater{}, [&](std::uint32_t half) { return azimuth(half); });
   }
 
   [[nodiscard]] double azimuth(std::uint32_t from, std::uint32_t to) const {
@@ -123,19 +133,28 @@ class CutGraph {
 
   /// The longest cuts first, each whose two faces are a good one without it.
   void drop_cuts() {
-    for (std::size_t e = edges_.size(); e-- > 0 && edges_[e].gap >= near_gap;) {
-      is_dropped_[e] = true;
-      if (!is_good()) is_dropped_[e] = false;
+    for (auto e = static_cast<std::uint32_t>(edges_.size()); e-- > 0 && edges_[e].gap >= near_gap;) {
+      const std::uint32_t beyond = next(2 * e);
+      is_dropped_[e] = std::ranges::count(face_from(2 * e), 2 * e + 1) == 0;
+      if (is_dropped_[e] && !is_good(face_from(beyond))) is_dropped_[e] = false;
     }
   }
 
-  /// One border a face, which passes nothing twice and is less than half around.
+  /// All hang together, by Euler's formula, and each face is a good one.
   [[nodiscard]] bool is_good() const {
-    const std::vector<Face> faces = trace();
-    const auto left = edges_.size() - static_cast<std::size_t>(std::ranges::count(is_dropped_, true));
-    return faces.size() + sites_.size() == left + 2 &&
-           std::ranges::all_of(faces, [&](const Face& face) { return is_simple(face) && is_small(face); });
+    std::vector<bool> seen(2 * edges_.size(), false);
+    std::size_t faces = 0;
+    for (std::uint32_t first = 0; first < seen.size(); ++first) {
+      if (seen[first]) continue;
+      const Face face = face_from(first);
+      if (!is_good(face)) return false;
+      for (const std::uint32_t half : face) seen[half] = true;
+      ++faces;
+    }
+    return faces + sites_.size() == edges_.size() + 2;
   }
+  /// A border that passes nothing twice, less than half around.
+  [[nodiscard]] bool is_good(const Face& face) const { return is_simple(face) && is_small(face); }
 
   [[nodiscard]] std::uint32_t start(std::uint32_t half) const { return edges_[half / 2].site[half % 2]; }
   [[nodiscard]] double azimuth(std::uint32_t half) const { return edges_[half / 2].azimuth[half % 2]; }
@@ -145,30 +164,21 @@ class CutGraph {
     return turn > 0 ? turn : turn + 2 * pi;
   }
 
-  [[nodiscard]] std::vector<Face> trace() const {
-    std::vector<Face> faces;
-    std::vector<bool> seen(2 * edges_.size(), false);
-    for (std::uint32_t first = 0; first < seen.size(); ++first) {
-      if (seen[first] || is_dropped_[first / 2]) continue;
-      Face& face = faces.emplace_back();
-      for (std::uint32_t half = first; !seen[half]; half = next(half)) {
-        seen[half] = true;
-        face.push_back(half);
-      }
-    }
-    return faces;
+  [[nodiscard]] Face face_from(std::uint32_t first) const {
+    Face face;
+    std::uint32_t half = first;
+    do face.push_back(half);
+    while ((half = next(half)) != first);
+    return face;
   }
   /// Where a half edge ends, the first one clockwise from the way back.
   [[nodiscard]] std::uint32_t next(std::uint32_t half) const {
     const std::uint32_t back = half ^ 1u;
-    std::uint32_t found = back;
-    double least = 2 * pi;
-    for (std::uint32_t h = 0; h < 2 * edges_.size(); ++h) {
-      if (h == back || is_dropped_[h / 2] || start(h) != start(back)) continue;
-      const double turn = clockwise(azimuth(back), azimuth(h));
-      if (turn < least) std::tie(found, least) = std::pair(h, turn);
-    }
-    return found;
+    const auto& halves = around_[start(back)];
+    auto at = static_cast<std::size_t>(std::ranges::find(halves, back) - halves.begin());
+    do at = (at + 1) % halves.size();
+    while (is_dropped_[halves[at] / 2]);
+    return halves[at];
   }
 
   [[nodiscard]] bool is_simple(const Face& face) const {
@@ -217,9 +227,12 @@ class CutGraph {
   std::size_t cap_count_;
   std::vector<Edge> edges_;  ///< the shortest first
   std::vector<bool> is_dropped_;
+  std::vector<std::vector<std::uint32_t>> around_;  ///< by site: the half edges from there, clockwise
 };
 
 }  // namespace
+
+double angle_between(Vec3 a, Vec3 b) { return 2 * std::atan2(norm(a - b), norm(a + b)); }
 
 BallCuts cuts_between(const std::vector<BallCap>& caps) { return CutGraph(caps).divide(); }
 

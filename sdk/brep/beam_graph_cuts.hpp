@@ -22,6 +22,12 @@ struct BallCap {
   double angle = 0;
 };
 
+/// Circles that are as close as that touch.
+inline constexpr double touching_gap = 1e-7;  // radians
+
+/// The angle between two unit vectors, exact also where it is small.
+[[nodiscard]] double angle_between(Vec3 a, Vec3 b);
+
 struct BallCuts {
   /// By number: a cap, or behind these a point. The cut leaves both at right angles, towards the other's axis.
   using Cut = std::array<std::uint32_t, 2>;

@@ -244,8 +244,6 @@ class JointFinder {
 
 }  // namespace
 
-double angle_between(Vec3 a, Vec3 b) { return 2 * std::atan2(norm(a - b), norm(a + b)); }
-
 Vec3 Joints::direction(Leaving l) const {
   const auto& node = graph.struts[l / 2].node;
   const Vec3 way = graph.nodes[node[1 - l % 2]].position - graph.nodes[node[l % 2]].position;

@@ -12,6 +12,7 @@
 #include <string>
 
 #include "beam_graph.hpp"
+#include "beam_graph_cuts.hpp"
 
 namespace meso::brep {
 
@@ -42,11 +43,5 @@ struct Joints {
 
 /// Empty, and why, if struts or balls meet in other ways. Balls that are too small by `equal_radii` are made larger.
 [[nodiscard]] std::optional<Joints> joints_of(BeamGraph graph, SnappedRadii& snapped, std::string& why);
-
-/// Circles that are as close as that touch.
-inline constexpr double touching_gap = 1e-7;  // radians
-
-/// The angle between two unit vectors, exact also where it is small.
-[[nodiscard]] double angle_between(Vec3 a, Vec3 b);
 
 }  // namespace meso::brep

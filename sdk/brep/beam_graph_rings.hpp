@@ -7,7 +7,6 @@
 
 #include <span>
 
-#include "beam_graph_cuts.hpp"
 #include "beam_graph_joints.hpp"
 #include "beam_graph_mesh.hpp"
 #include "meso/brep/body.hpp"

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "realise_beam_graph.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "beam_graph_body.hpp"
@@ -11,6 +12,22 @@ namespace meso::brep {
 namespace {
 
 const BeamsBody* beams_of(const eval::CellStream& cells) { return std::get_if<BeamsBody>(&cells.unit_cell().body); }
+
+struct SwallowedBeam {
+  double ball = 0, length = 0;
+};
+
+/// A beam that ends within the ball of its other node: struts leave that node so close together that they do not part
+/// on the way.
+std::optional<SwallowedBeam> swallowed_beam(const BeamGraph& graph) {
+  for (const BeamGraph::Strut& strut : graph.struts) {
+    const auto& [first, second] = strut.node;
+    const double length = norm(graph.nodes[second].position - graph.nodes[first].position);
+    const double ball = std::max(graph.nodes[first].radius, graph.nodes[second].radius);
+    if (ball > length && ball > 2 * std::max(strut.radius[0], strut.radius[1])) return SwallowedBeam{ball, length};
+  }
+  return {};
+}
 
 }  // namespace
 
@@ -29,9 +46,14 @@ std::optional<BeamGraphPart> beam_graph_part(const eval::CellStream& cells, Elem
   std::string why;
   auto graph = beam_graph(cells, snapped, why, context);
   const std::uint64_t kept = graph ? graph->cells : 0;
+  const auto swallowed = graph && has_touching_circles(cells) ? swallowed_beam(*graph) : std::nullopt;
   const auto joints = graph ? joints_of(std::move(*graph), snapped, why) : std::nullopt;
   if (!joints) {
     if (!why.empty()) context.report(Code::geometry_struts_meet, where, {why});
+    // Booleans of such balls take minutes and fail.
+    if (swallowed)
+      context.report(Code::geometry_struts_thick, where,
+                     {format_number(swallowed->ball), format_number(swallowed->length)});
     return {};
   }
   auto body = beam_graph_body(*joints, options, context.sink);
