@@ -192,6 +192,11 @@ FaceMoments sphere_moments(Vec3 centre, double radius, const std::vector<SphereL
 }
 
 AxisFrame clear_axes(Vec3 centre, const std::vector<SphereLoop>& loops, AxisFrame& hint) {
+  // What two struts in a row leave of a ball is a zone. About their axis its borders are exact for every reader.
+  if (loops.size() == 2 && dot(loops[0][0].axis, loops[1][0].axis) < 1e-12 - 1) {
+    const SphereArc& arc = loops[0][0];
+    return {centre, arc.axis, unit(arc.from - dot(arc.from, arc.axis) * arc.axis)};
+  }
   constexpr double clear_enough = 0.03;
   constexpr int azimuths = 24;
   AxisFrame best = hint;

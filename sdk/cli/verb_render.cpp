@@ -60,7 +60,8 @@ int render_verb(Run& run, const std::string& in, const std::string& out, const s
 
 void add_render(CLI::App& app, Run& run) {
   CLI::App* verb = app.add_subcommand(
-      "render", "Draw a document, .step, .stp, .stl, .ply, .obj or .off as one well-lit picture (.png)");
+      "render",
+      "Draw a document, .step, .stp, .brep, .iges, .igs, .stl, .ply, .obj or .off as one well-lit picture (.png)");
   static std::string in, out, cut;
   static picture::RenderOptions look;
   verb->add_option("IN", in, "Document or geometry")->required();

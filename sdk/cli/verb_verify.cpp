@@ -87,7 +87,8 @@ int verify_verb(Run& run, const std::string& file, const DeepFlags& flags) {
 
 void add_verify(CLI::App& app, Run& run) {
   CLI::App* verb = app.add_subcommand(
-      "verify", "Recompute a document's validation values, or audit a .step, .stp, .stl, .ply, .obj or .off");
+      "verify",
+      "Recompute a document's validation values, or audit a .step, .stp, .brep, .iges, .igs, .stl, .ply, .obj or .off");
   static std::string file;
   static DeepFlags deep;
   verb->add_option("FILE", file, "Document or geometry")->required();

@@ -18,8 +18,7 @@ bool is_mesh_file(const std::filesystem::path& file) {
 
 std::optional<TriangleMesh> load_mesh(const std::filesystem::path& file, MakeOptions options, DiagnosticSink& sink) {
   if (is_mesh_file(file)) return read_surface_mesh_file(file, sink, options.run);
-  const std::string extension = lower_extension(file);
-  if (extension == ".step" || extension == ".stp") {
+  if (brep::is_exact_file(file)) {
     const auto body = brep::read_step(
         file, {.deflection_mm = options.deflection_mm.value_or(0.1), .angle_rad = options.angle_rad.value_or(0.3)},
         options.run, sink);

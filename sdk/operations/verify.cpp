@@ -8,6 +8,7 @@
 #include "deep_verify.hpp"
 #include "meso/base/number.hpp"
 #include "meso/brep/audit.hpp"
+#include "meso/brep/read_step.hpp"
 #include "meso/brep/triangles.hpp"
 #include "meso/membership/crossings.hpp"
 #include "meso/package/open_document.hpp"
@@ -134,7 +135,7 @@ std::optional<VerifyReport> verify(const fs::path& file, const MakeOptions& opti
   std::optional<VerifyReport> report;
   if (is_mesh_file(file)) {
     report = audit_mesh_file(file, options.run, sink);
-  } else if (is_step_file(file)) {
+  } else if (brep::is_exact_file(file)) {
     report = audit_step(file, deep.has_value(), options.run, sink);
   } else {
     report = verify_document(file, options, deep, sink);

@@ -6,6 +6,7 @@
 #include "meso/base/memory_mesh_sink.hpp"
 #include "meso/base/number.hpp"
 #include "meso/base/output_file.hpp"
+#include "meso/brep/read_step.hpp"
 #include "meso/brep/triangles.hpp"
 #include "meso/brep/write_brep.hpp"
 #include "meso/export_mesh/mesh_writer.hpp"
@@ -85,7 +86,7 @@ bool is_step_file(const std::filesystem::path& file) {
   return extension == ".step" || extension == ".stp";
 }
 
-bool is_document(const std::filesystem::path& file) { return !is_step_file(file) && !is_mesh_file(file); }
+bool is_document(const std::filesystem::path& file) { return !brep::is_exact_file(file) && !is_mesh_file(file); }
 
 std::optional<bool> output_needs_mesh(const std::filesystem::path& file) {
   const auto format = format_of(file);
