@@ -60,7 +60,7 @@ def bent_truss(rng, *_):
     shortest = min(math.dist(*(place(index, n) for n in beam)) for index in itertools.product(*map(range, counts)) for beam in ends)
     if shortest < 0.5:
         return None  # on a pole
-    radius = round(shortest * rng.uniform(0.05, 0.12), 3)
+    radius = round(shortest * rng.uniform(0.04, 0.09), 3)
     statement, least = grown(rng, radius, inner + 3 * step)
     inside, where = struts_inside(place, counts, ends, least)
     words = [f"{s}deg" if is_angle else str(s) for s, is_angle in zip(start, degrees)], [f"{s}deg" if is_angle else str(s) for s, is_angle in zip(spacing, degrees)]
