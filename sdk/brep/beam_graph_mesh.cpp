@@ -105,6 +105,46 @@ std::vector<Vec3> places_to_try(const Polygons& polygons, std::span<const Vec3> 
   return out;
 }
 
+std::optional<Triangulation> mesh_between(const SphereSurface& sphere, const Polygons& polygons, double spacing,
+                                          std::span<const Vec3> holes) {
+  const std::vector<Vec3> spread = spread_points(polygons, std::max(0.01, spacing));
+  for (const Vec3& pole : places_to_try(polygons, holes)) {
+    std::vector<PlanePoint> plane = seen_from(pole, polygons.units);
+    if (area_within(plane, polygons.loops) <= 0) continue;
+    Triangulation mesh;
+    for (const Vec3& p : polygons.points) mesh.points.push_back({.point = p});
+    const std::vector<PlanePoint> spread_plane = seen_from(pole, spread);
+    for (std::size_t i = 0; i < spread.size(); ++i) {
+      if (!is_within(spread_plane[i], plane, polygons.loops)) continue;
+      mesh.points.push_back({.point = sphere.frame.origin + sphere.radius * spread[i]});
+    }
+    const std::size_t inner = mesh.points.size() - polygons.points.size();
+    for (std::size_t i = polygons.points.size(); i < mesh.points.size(); ++i) {
+      const Vec3 n = unit(mesh.points[i].point - sphere.frame.origin);
+      plane.push_back(seen_from(pole, std::span(&n, 1)).front());
+    }
+    auto triangles = triangulate_between(plane, polygons.loops);
+    if (!triangles || triangles->size() != polygons.sides + 2 * polygons.loops.size() - 4 + 2 * inner) continue;
+    mesh.triangles = std::move(*triangles);
+    return mesh;
+  }
+  return {};
+}
+
+/// How far triangles are off the sphere, where they are farthest off within and not on a side.
+double depth_of(const Triangulation& mesh, const SphereSurface& sphere) {
+  double deepest = 0;
+  for (const auto& corners : mesh.triangles) {
+    std::array<Vec3, 3> p;
+    for (std::size_t k = 0; k < 3; ++k) p[k] = mesh.points[corners[k]].point - sphere.frame.origin;
+    const Vec3 normal = cross(p[1] - p[0], p[2] - p[0]);
+    const auto is_left = [&](std::size_t k) { return dot(normal, cross(p[k], p[(k + 1) % 3])) > 0; };
+    if (norm(normal) > 0 && is_left(0) && is_left(1) && is_left(2))
+      deepest = std::max(deepest, sphere.radius - std::fabs(dot(unit(normal), p[0])));
+  }
+  return deepest;
+}
+
 }  // namespace
 
 Triangulation strut_mesh(std::span<const RingPoint> lower, std::span<const RingPoint> upper) {
@@ -131,30 +171,15 @@ Triangulation strut_mesh(std::span<const RingPoint> lower, std::span<const RingP
 
 std::optional<Triangulation> sphere_mesh(const SphereSurface& sphere, const std::vector<std::vector<Vec3>>& loops,
                                          double deflection, double angle, std::span<const Vec3> holes) {
+  constexpr int most_attempts = 4;
   const Polygons polygons = polygons_of(sphere.frame.origin, loops);
-  const double spacing = std::min({0.8, angle, std::sqrt(6 * deflection / sphere.radius)});
-  const std::vector<Vec3> spread = spread_points(polygons, std::max(0.01, spacing));
-  for (const Vec3& pole : places_to_try(polygons, holes)) {
-    std::vector<PlanePoint> plane = seen_from(pole, polygons.units);
-    if (area_within(plane, polygons.loops) <= 0) continue;
-    Triangulation mesh;
-    for (const Vec3& p : polygons.points) mesh.points.push_back({.point = p});
-    const std::vector<PlanePoint> spread_plane = seen_from(pole, spread);
-    for (std::size_t i = 0; i < spread.size(); ++i) {
-      if (!is_within(spread_plane[i], plane, polygons.loops)) continue;
-      mesh.points.push_back({.point = sphere.frame.origin + sphere.radius * spread[i]});
-    }
-    const std::size_t inner = mesh.points.size() - polygons.points.size();
-    for (std::size_t i = polygons.points.size(); i < mesh.points.size(); ++i) {
-      const Vec3 n = unit(mesh.points[i].point - sphere.frame.origin);
-      plane.push_back(seen_from(pole, std::span(&n, 1)).front());
-    }
-    auto triangles = triangulate_between(plane, polygons.loops);
-    if (!triangles || triangles->size() != polygons.sides + 2 * polygons.loops.size() - 4 + 2 * inner) continue;
-    mesh.triangles = std::move(*triangles);
-    return mesh;
+  double spacing = std::min({0.8, angle, std::sqrt(6 * deflection / sphere.radius)});  // of equilateral triangles
+  std::optional<Triangulation> mesh;
+  for (int attempt = 0; attempt < most_attempts; ++attempt, spacing *= 0.85) {
+    mesh = mesh_between(sphere, polygons, spacing, holes);
+    if (!mesh || depth_of(*mesh, sphere) <= deflection) break;
   }
-  return {};
+  return mesh;
 }
 
 }  // namespace meso::brep
