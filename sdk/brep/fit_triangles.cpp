@@ -2,9 +2,12 @@
 #include "fit_triangles.hpp"
 
 #include <ShapeAnalysis_Surface.hxx>
+#include <limits>
 #include <map>
 #include <optional>
 #include <tuple>
+
+#include "surface_foot.hpp"
 
 namespace meso::brep {
 namespace {
@@ -33,37 +36,70 @@ Vec3 place_of(const MeshPoint& p, const Mat3& lattice) {
   return p.point + lattice * Vec3{static_cast<double>(o[0]), static_cast<double>(o[1]), static_cast<double>(o[2])};
 }
 
+using Parameters = std::optional<gp_Pnt2d>;
+
+/// Feet on one surface. On free forms Newton's method begins at a foot nearby; a search from anywhere takes a hundred
+/// times as long.
+class Feet {
+ public:
+  struct Foot {
+    Vec3 point;
+    gp_Pnt2d at;
+  };
+  Feet(const Handle(Geom_Surface) & surface, int searches)
+      : surface_(new ShapeAnalysis_Surface(surface)),
+        is_free_form_(GeomAdaptor_Surface(surface).GetType() > GeomAbs_Torus),
+        searches_(searches) {}
+
+  /// Farther off than `near` a foot on a free form may be one on another side: nothing when searches are used up.
+  [[nodiscard]] std::optional<Foot> operator()(Vec3 p, double near, const std::array<Parameters, 2>& starts) {
+    for (const Parameters& start : starts)
+      if (const Parameters at = is_free_form_ && start ? foot_beside(*surface_, *start, p) : std::nullopt)
+        if (const Vec3 foot = to_vec(surface_->Value(*at)); norm(foot - p) <= near) return Foot{foot, *at};
+    if (is_free_form_ && searches_-- <= 0) return {};
+    const gp_Pnt2d at = surface_->ValueOfUV(to_pnt(p), 1e-7);
+    return Foot{to_vec(surface_->Value(at)), at};
+  }
+
+ private:
+  Handle(ShapeAnalysis_Surface) surface_;
+  bool is_free_form_;
+  int searches_;
+};
+
 /// Halves at the surface the segments between two triangles that `wants` names, given the segment and how far its
 /// middle is off.
 template <typename Wants>
-void halve(Triangulation& mesh, const Handle(Geom_Surface) & surface, const Mat3& lattice, const Wants& wants) {
+void halve(Triangulation& mesh, Feet feet, const Mat3& lattice, const Wants& wants) {
   constexpr int most_passes = 12;  // each halves what is too long
   // Triangles that have nothing to do with the surface get no better.
   const std::size_t most_triangles = 8 * mesh.triangles.size() + 1000;
-  const Handle(ShapeAnalysis_Surface) analysis = new ShapeAnalysis_Surface(surface);
-  // On free forms a search begins at the last answer, and anew where that ends far off.
-  std::optional<gp_Pnt2d> last;
-  const auto foot = [&](Vec3 p, double near) {
-    last = last ? analysis->NextValueOfUV(*last, to_pnt(p), 1e-7, near) : analysis->ValueOfUV(to_pnt(p), 1e-7);
-    return to_vec(analysis->Value(*last));
-  };
   const auto place = [&](std::uint32_t i) { return place_of(mesh.points[i], lattice); };
+  std::vector<bool> is_new(mesh.triangles.size(), true);  // since the last pass
+  std::vector<Parameters> beside(mesh.points.size());     // of a foot near each point
   for (int pass = 0; pass < most_passes && mesh.triangles.size() < most_triangles; ++pass) {
     std::vector<bool> divided(mesh.triangles.size());
     bool any = false;
     for (const auto& [segment, sides] : segments_of(mesh)) {
-      if (sides.count != 2) continue;
+      if (sides.count != 2 || !(is_new[sides.triangle[0]] || is_new[sides.triangle[1]])) continue;
       const Vec3 middle = 0.5 * (place(segment[0]) + place(segment[1]));
-      const double near = 0.1 * norm(place(segment[1]) - place(segment[0]));
-      if (!wants(segment, norm(foot(middle, near) - middle))) continue;
+      const double near = 0.25 * norm(place(segment[1]) - place(segment[0]));
+      const auto foot = feet(middle, near, {beside[segment[0]], beside[segment[1]]});
+      if (!foot) continue;
+      for (const std::uint32_t end : segment)
+        if (!beside[end]) beside[end] = foot->at;
+      if (!wants(segment, norm(foot->point - middle))) continue;
       any = true;
       if (divided[sides.triangle[0]] || divided[sides.triangle[1]]) continue;  // in the next pass
       // A little towards the corners beside it: on a round border the middle's foot can be one of them.
-      Vec3 beside = -2.0 * (place(segment[0]) + place(segment[1]));
+      Vec3 corners = -2.0 * (place(segment[0]) + place(segment[1]));
       for (const std::size_t t : sides.triangle)
-        for (const std::uint32_t corner : mesh.triangles[t]) beside += place(corner);
+        for (const std::uint32_t corner : mesh.triangles[t]) corners += place(corner);
+      const auto point = feet(0.75 * middle + 0.125 * corners, near, {foot->at, {}});
+      if (!point) continue;
       const auto fresh = static_cast<std::uint32_t>(mesh.points.size());
-      mesh.points.push_back({.point = foot(0.75 * middle + 0.125 * beside, near)});
+      mesh.points.push_back({.point = point->point});
+      beside.emplace_back(point->at);
       for (const std::size_t t : sides.triangle) {
         divided[t] = true;
         std::array<std::uint32_t, 3> half = mesh.triangles[t];
@@ -79,6 +115,8 @@ void halve(Triangulation& mesh, const Handle(Geom_Surface) & surface, const Mat3
       }
     }
     if (!any) return;
+    is_new = divided;
+    is_new.resize(mesh.triangles.size(), true);
   }
 }
 
@@ -95,7 +133,8 @@ SegmentName name_of(MeshPoint a, MeshPoint b) {
 }  // namespace
 
 void fit_triangles(Triangulation& mesh, const Handle(Geom_Surface) & surface, const Mat3& lattice, double deflection) {
-  halve(mesh, surface, lattice, [&](const Segment&, double off) { return off > deflection; });
+  constexpr int searches = 32;
+  halve(mesh, {surface, searches}, lattice, [&](const Segment&, double off) { return off > deflection; });
 }
 
 void part_segments(const std::vector<MeshedFace>& faces, const Mat3& lattice, const Box3& box, double tolerance) {
@@ -112,11 +151,12 @@ void part_segments(const std::vector<MeshedFace>& faces, const Mat3& lattice, co
           if (std::fabs(a[i] - wall) < tolerance && std::fabs(b[i] - wall) < tolerance) return true;
       return false;
     };
-    halve(*face.mesh, face.surface, lattice, [&, given = points.size()](const Segment& segment, double) {
-      if (segment[1] >= given) return false;  // a half: nobody else has its middle
-      const auto found = uses.find(name_of(points[segment[0]], points[segment[1]]));
-      return (found != uses.end() && found->second > 1) || (!face.is_wall && in_one_wall(segment));
-    });
+    halve(*face.mesh, {face.surface, std::numeric_limits<int>::max()}, lattice,
+          [&, given = points.size()](const Segment& segment, double) {
+            if (segment[1] >= given) return false;  // a half: nobody else has its middle
+            const auto found = uses.find(name_of(points[segment[0]], points[segment[1]]));
+            return (found != uses.end() && found->second > 1) || (!face.is_wall && in_one_wall(segment));
+          });
   }
 }
 

@@ -14,21 +14,17 @@ constexpr double search_tolerance = 1e-9;
 
 }  // namespace
 
-SurfaceFoot::SurfaceFoot(const Surface& surface) : surface_(surface) {
-  if (std::holds_alternative<BSplineSurface>(surface)) search_ = new ShapeAnalysis_Surface(to_geom(surface));
-}
-
 // Newton's method for the zero of the derivatives of |S(u, v) - p|^2 / 2.
-std::optional<gp_Pnt2d> SurfaceFoot::from_last(Vec3 p) const {
+std::optional<gp_Pnt2d> foot_beside(ShapeAnalysis_Surface& surface, const gp_Pnt2d& start, Vec3 p) {
   constexpr int most_steps = 12;
   constexpr double flat = 1e-10;  // of the angle between the parameter lines
   double first[2], last[2];
-  search_->Bounds(first[0], last[0], first[1], last[1]);
-  double uv[2] = {last_.X(), last_.Y()};
+  surface.Bounds(first[0], last[0], first[1], last[1]);
+  double uv[2] = {start.X(), start.Y()};
   for (int n = 0; n < most_steps; ++n) {
     gp_Pnt s;
     gp_Vec su, sv, suu, svv, suv;
-    search_->Adaptor3d()->D2(uv[0], uv[1], s, su, sv, suu, svv, suv);
+    surface.Adaptor3d()->D2(uv[0], uv[1], s, su, sv, suu, svv, suv);
     const gp_Vec r(to_pnt(p), s);
     const double a = su * su + r * suu, b = su * sv + r * suv, c = sv * sv + r * svv;
     const double det = a * c - b * b, gu = r * su, gv = r * sv;
@@ -41,12 +37,16 @@ std::optional<gp_Pnt2d> SurfaceFoot::from_last(Vec3 p) const {
   return {};
 }
 
+SurfaceFoot::SurfaceFoot(const Surface& surface) : surface_(surface) {
+  if (std::holds_alternative<BSplineSurface>(surface)) search_ = new ShapeAnalysis_Surface(to_geom(surface));
+}
+
 Vec3 SurfaceFoot::operator()(Vec3 p, double near_mm) {
   if (search_.IsNull() || !std::isfinite(p.x + p.y + p.z)) return nearest_point(surface_, p);
   // A search that begins at the last answer can end on the far side of a body: what is not at hand is searched for from
   // anywhere.
   const auto distance = [&](const gp_Pnt2d& uv) { return norm(to_vec(search_->Value(uv)) - p); };
-  const std::optional<gp_Pnt2d> beside = has_last_ ? from_last(p) : std::nullopt;
+  const std::optional<gp_Pnt2d> beside = has_last_ ? foot_beside(*search_, last_, p) : std::nullopt;
   if (beside && distance(*beside) <= near_mm) {
     last_ = *beside;
   } else {

@@ -11,6 +11,9 @@ class ShapeAnalysis_Surface;
 
 namespace meso::brep {
 
+/// By Newton's method from parameters nearby; nothing where it does not settle.
+[[nodiscard]] std::optional<gp_Pnt2d> foot_beside(ShapeAnalysis_Surface& surface, const gp_Pnt2d& start, Vec3 p);
+
 /// Closed forms, but for B-splines: those are searched, and the last answer is where the next search begins.
 class SurfaceFoot {
  public:
@@ -19,8 +22,6 @@ class SurfaceFoot {
   [[nodiscard]] Vec3 operator()(Vec3 p, double near_mm = 1e-6);
 
  private:
-  [[nodiscard]] std::optional<gp_Pnt2d> from_last(Vec3 p) const;
-
   const Surface& surface_;
   Handle(ShapeAnalysis_Surface) search_;
   gp_Pnt2d last_;
