@@ -180,29 +180,46 @@ CoarseMesh CoarseMesh::placed(const Affine& placement) const {
   return mesh;
 }
 
+namespace {
+
+/// False: a face has no triangles.
+bool add_triangles(const TopoDS_Shape& meshed, CoarseMesh& mesh) {
+  for (TopExp_Explorer it(meshed, TopAbs_FACE); it.More(); it.Next()) {
+    TopLoc_Location location;
+    const Handle(Poly_Triangulation) facets = BRep_Tool::Triangulation(TopoDS::Face(it.Current()), location);
+    if (facets.IsNull()) return false;
+    const auto first = static_cast<std::uint32_t>(mesh.points.size());
+    for (int i = 1; i <= facets->NbNodes(); ++i)
+      mesh.points.push_back(to_vec(facets->Node(i).Transformed(location.Transformation())));
+    for (int i = 1; i <= facets->NbTriangles(); ++i) {
+      int a = 0, b = 0, c = 0;
+      facets->Triangle(i).Get(a, b, c);
+      const auto index = [&](int node) { return first + static_cast<std::uint32_t>(node) - 1; };
+      mesh.triangles.push_back({index(a), index(b), index(c)});
+    }
+  }
+  return true;
+}
+
+}  // namespace
+
 CoarseMesh coarse_mesh(const Solids& solids, double fineness) {
+  constexpr int most_attempts = 4;  // where the mesher fails at a narrow place, it mostly does not with shorter chords
   CoarseMesh mesh;
   for (const TopoDS_Shape& solid : solids) {
     if (add_ellipsoid(solid, fineness, mesh)) continue;
-    const TopoDS_Shape copy = BRepBuilderAPI_Copy(solid).Shape();  // the original may get a finer mesh later
-    const Box3 box = quick_box(copy);
-    const double deflection = 0.01 * fineness * norm(box.max - box.min);
+    const Box3 box = quick_box(solid);
+    double deflection = 0.01 * fineness * norm(box.max - box.min), angle = 0.3;
     mesh.error = std::max(mesh.error, 2 * deflection);  // the mesher's deflection is aimed at, not guaranteed
-    BRepMesh_IncrementalMesh(copy, deflection, false, 0.3);
-    for (TopExp_Explorer it(copy, TopAbs_FACE); it.More(); it.Next()) {
-      TopLoc_Location location;
-      const Handle(Poly_Triangulation) facets = BRep_Tool::Triangulation(TopoDS::Face(it.Current()), location);
-      if (facets.IsNull()) throw Standard_Failure("a face cannot be triangulated");
-      const auto first = static_cast<std::uint32_t>(mesh.points.size());
-      for (int i = 1; i <= facets->NbNodes(); ++i)
-        mesh.points.push_back(to_vec(facets->Node(i).Transformed(location.Transformation())));
-      for (int i = 1; i <= facets->NbTriangles(); ++i) {
-        int a = 0, b = 0, c = 0;
-        facets->Triangle(i).Get(a, b, c);
-        const auto index = [&](int node) { return first + static_cast<std::uint32_t>(node) - 1; };
-        mesh.triangles.push_back({index(a), index(b), index(c)});
-      }
+    bool done = false;
+    for (int attempt = 0; attempt < most_attempts && !done; ++attempt, deflection /= 3, angle /= 1.6) {
+      const TopoDS_Shape copy = BRepBuilderAPI_Copy(solid).Shape();  // the original may get a finer mesh later
+      BRepMesh_IncrementalMesh(copy, deflection, false, angle);
+      CoarseMesh with = mesh;
+      done = add_triangles(copy, with);
+      if (done) mesh = std::move(with);
     }
+    if (!done) throw Standard_Failure("a face cannot be triangulated");
   }
   return mesh;
 }
