@@ -69,10 +69,15 @@ namespace {
 double signed_area(const AxisFrame& frame, const Loop& loop) {
   const Vec3 y = cross(frame.z, frame.x);
   const auto around = [&](Vec3 p) { return std::atan2(-dot(p, y), -dot(p, frame.x)); };  // jumps at the seam
-  double area = 0;
+  if (loop.empty()) return 0;
+  const double first = around(loop.front());
+  double area = 0, at_p = first;
   for (std::size_t i = 0; i < loop.size(); ++i) {
-    const Vec3 p = loop[i], q = loop[(i + 1) % loop.size()];
-    area -= (around(q) - around(p)) * (dot(p, frame.z) + dot(q, frame.z)) / 2;
+    const bool is_last = i + 1 == loop.size();
+    const Vec3 p = loop[i], q = is_last ? loop.front() : loop[i + 1];
+    const double at_q = is_last ? first : around(q);
+    area -= (at_q - at_p) * (dot(p, frame.z) + dot(q, frame.z)) / 2;
+    at_p = at_q;
   }
   return area;
 }
@@ -126,10 +131,15 @@ std::vector<Vec3> axes_to_try(const AxisFrame& own, const std::vector<Loop>& loo
     for (const Vec3& p : loop) middle += p;
     if (norm(middle) > 1e-3) axes.push_back(unit(middle));
   }
-  for (int i = 0; i < spread_axes; ++i) {
-    const double h = (i + 0.5) / spread_axes, around = pi * (1 + std::sqrt(5.0)) * i, r = std::sqrt(1 - h * h);
-    axes.push_back({r * std::cos(around), r * std::sin(around), h});
-  }
+  static const std::vector<Vec3> spread = [] {
+    std::vector<Vec3> all;
+    for (int i = 0; i < spread_axes; ++i) {
+      const double h = (i + 0.5) / spread_axes, around = pi * (1 + std::sqrt(5.0)) * i, r = std::sqrt(1 - h * h);
+      all.push_back({r * std::cos(around), r * std::sin(around), h});
+    }
+    return all;
+  }();
+  axes.insert(axes.end(), spread.begin(), spread.end());
   return axes;
 }
 

@@ -145,7 +145,8 @@ def main():
     print(f"{'document':36} {'sol':>3} {'faces':>6} {'volume mm3':>12} {'OpenCASC.':>10} {'FreeCAD':>10} {'Gmsh: tetrahedra':>18}", flush=True)
     results = []
     with concurrent.futures.ThreadPoolExecutor(a.jobs) as pool:
-        for good, line in pool.map(lambda case: check(a.meso.resolve(), *case), cases):
+        for done in concurrent.futures.as_completed([pool.submit(check, a.meso.resolve(), *case) for case in cases]):
+            good, line = done.result()
             print(line, flush=True)
             results.append(good)
     print(f"{sum(results)} of {len(results)} as they must be")
