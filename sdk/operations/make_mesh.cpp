@@ -16,6 +16,7 @@
 #include "meso/implicit/accurate_mesh.hpp"
 #include "meso/implicit/compile.hpp"
 #include "meso/implicit/contour.hpp"
+#include "meso/implicit/surface_edges.hpp"
 #include "meso/import_surface_mesh/read_surface_mesh.hpp"
 #include "meso/operations/macrostructure_distance.hpp"
 #include "meso/package/open_document.hpp"
@@ -111,11 +112,12 @@ bool stream_mesh(const Built& built, const implicit::Grid& grid, const MakeOptio
   }
   const double feature = std::isfinite(built.smallest_feature_mm) ? built.smallest_feature_mm : 0;
   const double tolerance = options.tolerance_mm.value_or(0);
+  const bool sharp = options.tolerance_mm ? implicit::may_have_edges(built.field.term(), grid.box) : options.sharp;
   const auto made = implicit::make_accurate_mesh(source_on, grid,
                                                  {.tolerance = tolerance,
                                                   .simplify = options.simplify_mm.value_or(0),
                                                   .smallest_feature = feature,
-                                                  .sharp = options.sharp || options.tolerance_mm},
+                                                  .sharp = sharp},
                                                  options.run, sink);
   if (!made) return false;
   if (feature > 0 && feature < tolerance)

@@ -17,6 +17,7 @@
 #include "meso/implicit/accurate_mesh.hpp"
 #include "meso/implicit/compile.hpp"
 #include "meso/implicit/contour.hpp"
+#include "meso/implicit/surface_edges.hpp"
 #include "meso/import_surface_mesh/read_surface_mesh.hpp"
 #include "meso/mesh_distance/mesh_field.hpp"
 #include "meso/sdf/build_field.hpp"
@@ -127,12 +128,16 @@ std::unique_ptr<implicit::GridSource> Job::source_on(const implicit::Grid& grid)
 
 /// From a tolerance, or simplified: made in memory, then written.
 bool Job::make_accurate(MeshSink& into) {
+  // To a tolerance, sharp wherever there may be edges; a smooth surface takes a fifth of the samples.
+  const bool sharp = options_.tolerance > 0
+                         ? !certainly_empty_ && implicit::may_have_edges(field_->term(), report_.grid.box)
+                         : options_.sharp;
   const auto made =
       implicit::make_accurate_mesh([this](const implicit::Grid& grid) { return source_on(grid); }, report_.grid,
                                    {.tolerance = options_.tolerance,
                                     .simplify = options_.simplify,
                                     .smallest_feature = smallest_feature(),
-                                    .sharp = options_.sharp || options_.tolerance > 0},
+                                    .sharp = sharp},
                                    options_.run, sink_);
   if (!made) return false;
   report_.grid = made->grid;

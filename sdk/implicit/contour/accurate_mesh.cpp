@@ -2,6 +2,7 @@
 #include "meso/implicit/accurate_mesh.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 
 #include "meso/base/memory_mesh_sink.hpp"
@@ -30,6 +31,48 @@ class WorkingMesh final : public MemoryMeshSink {
   [[nodiscard]] std::uint64_t bytes_per_triangle() const override { return RefinableMesh::bytes_per_triangle; }
 };
 
+/// Counts the samples that another source gives, wherever they are taken.
+class CountedSource final : public GridSource {
+ public:
+  struct Counts {
+    std::atomic<std::uint64_t> on_grids{0}, at_points{0};
+  };
+
+  CountedSource(std::unique_ptr<GridSource> source, Counts& counts) : source_(std::move(source)), counts_(counts) {}
+
+  [[nodiscard]] const Grid& grid() const override { return source_->grid(); }
+  [[nodiscard]] std::unique_ptr<GridSampler> sampler() const override {
+    return std::make_unique<Sampler>(source_->sampler(), grid().nodes[0], counts_);
+  }
+  [[nodiscard]] bool signs_only() const override { return source_->signs_only(); }
+  [[nodiscard]] double exact_within() const override { return source_->exact_within(); }
+  [[nodiscard]] std::uint64_t bytes() const override { return source_->bytes(); }
+
+ private:
+  class Sampler final : public GridSampler {
+   public:
+    Sampler(std::unique_ptr<GridSampler> sampler, std::int32_t nodes, Counts& counts)
+        : sampler_(std::move(sampler)), nodes_(static_cast<std::uint64_t>(nodes)), counts_(counts) {}
+    void begin_slab(std::int32_t first, std::int32_t last) override { sampler_->begin_slab(first, last); }
+    void row(std::int32_t j, std::int32_t k, float* values, std::uint64_t* inside) override {
+      counts_.on_grids += nodes_;
+      sampler_->row(j, k, values, inside);
+    }
+    void values_at(std::span<const Vec3> points, double* out) override {
+      counts_.at_points += points.size();
+      sampler_->values_at(points, out);
+    }
+
+   private:
+    std::unique_ptr<GridSampler> sampler_;
+    std::uint64_t nodes_;
+    Counts& counts_;
+  };
+
+  std::unique_ptr<GridSource> source_;
+  Counts& counts_;
+};
+
 class Making {
  public:
   Making(const SourceOn& source_on, const AccurateMeshOptions& options, const RunOptions& run,
@@ -39,14 +82,24 @@ class Making {
   std::optional<AccurateMesh> make(Grid grid);
 
  private:
+  std::unique_ptr<GridSource> counted_on(const Grid& grid);
   bool contour_on(const Grid& grid);
   bool to_tolerance(const Grid& first);
   [[nodiscard]] bool is_affordable(const Grid& coarse);
+  /// What is seen of a mesh that a grid gives.
+  struct Look {
+    double astray = 0;         ///< the share of triangles that face otherwise than the surface does
+    double distance = 0;       ///< few edges are farther
+    double triangles_for = 0;  ///< about how many triangles the tolerance takes
+  };
+  static constexpr double look_near = 0.27, few = 2e-3, few_astray = 2e-3;
+  Look look_at(const TriangleMesh& mesh, double spacing);
   bool resolve(Grid grid);
   bool refine();
   bool simplify();
   void measure(TriangleMesh mesh, bool may_move, double tolerance);
   [[nodiscard]] bool fits(double triangles);
+  [[nodiscard]] bool is_smooth() const { return options_.tolerance > 0 && !options_.sharp; }
   bool go_on();
   [[nodiscard]] std::function<bool()> not_stopped() const {
     return [this] { return !run_.should_stop(); };
@@ -57,6 +110,7 @@ class Making {
   const RunOptions& run_;
   DiagnosticSink& diagnostics_;
   AccurateMesh out_;
+  CountedSource::Counts counts_;
   std::unique_ptr<GridSource> source_;
   std::optional<SurfaceFeet> feet_;
   std::optional<RefinableMesh> refinable_;
@@ -68,18 +122,22 @@ bool Making::go_on() {
   return false;
 }
 
+std::unique_ptr<GridSource> Making::counted_on(const Grid& grid) {
+  if (!check_grid(grid, run_, diagnostics_)) return nullptr;
+  auto source = source_on_(grid);
+  return source ? std::make_unique<CountedSource>(std::move(source), counts_) : nullptr;
+}
+
 bool Making::contour_on(const Grid& grid) {
-  if (feet_) out_.surface_samples += feet_->asked();
   refinable_.reset();
   feet_.reset();
-  if (!check_grid(grid, run_, diagnostics_)) return false;
-  source_ = source_on_(grid);  // only now: the feet were asked of the one before
+  source_ = counted_on(grid);  // only now: the feet were asked of the one before
   if (!source_) return false;
   out_.grid = grid;
-  out_.grid_samples += grid.node_count();
   out_.mesh = {};
   WorkingMesh sink(out_.mesh);
-  const auto report = contour(*source_, sink, {.polish = true, .sharp = options_.sharp}, run_, diagnostics_);
+  // Vertices of a smooth surface are moved onto it afterwards, when its gradient there is known.
+  const auto report = contour(*source_, sink, {.polish = !is_smooth(), .sharp = options_.sharp}, run_, diagnostics_);
   if (!report) return false;
   out_.euler = report->euler;
   feet_.emplace(*source_, not_stopped());
@@ -87,7 +145,7 @@ bool Making::contour_on(const Grid& grid) {
 }
 
 void Making::measure(TriangleMesh mesh, bool may_move, double tolerance) {
-  refinable_.emplace(std::move(mesh), out_.grid.box, *feet_);
+  refinable_.emplace(std::move(mesh), out_.grid.box, *feet_, may_move && is_smooth());
   if (may_move) refinable_->move_vertices(tolerance);
   refinable_->measure(tolerance);
 }
@@ -107,13 +165,11 @@ bool Making::fits(double triangles) {
 bool Making::is_affordable(const Grid& coarse) {
   constexpr std::size_t asked = 200;
   constexpr double unsure = 8;
-  if (!check_grid(coarse, run_, diagnostics_)) return false;
-  const auto source = source_on_(coarse);
+  const auto source = counted_on(coarse);
   if (!source) return false;
   TriangleMesh mesh;
   MemoryMeshSink sink(mesh);
   if (!contour(*source, sink, {}, run_, diagnostics_)) return false;
-  out_.grid_samples += coarse.node_count();
   std::vector<PointNearSurface> middles;
   const std::size_t step = mesh.triangles.size() / asked + 1;
   for (std::size_t t = 0; t < mesh.triangles.size(); t += step) {
@@ -124,7 +180,6 @@ bool Making::is_affordable(const Grid& coarse) {
   SurfaceFeet feet(*source, not_stopped());
   std::vector<double> distances;
   feet.distances(middles, 0.01 * largest_spacing(coarse), distances);
-  out_.surface_samples += feet.asked();
   if (!go_on()) return false;
   double times = 0;
   for (const double d : distances) times += std::max(1.0, d / options_.tolerance);
@@ -134,36 +189,91 @@ bool Making::is_affordable(const Grid& coarse) {
          fits(triangles);
 }
 
-// The coarsest of grids, each twice as fine as the one before, on which few edges are farther from the surface than a
-// quarter of a cell: where a mesh is that close, it turns where the surface turns.
+// Some triangles of a mesh, spread over all of it, are looked at: whether they face as the field does there, and how
+// far they are.
+Making::Look Making::look_at(const TriangleMesh& mesh, double spacing) {
+  constexpr std::size_t most = 3000;
+  std::vector<Vec3> places, slopes;  // three corners and the middle
+  const std::size_t step = mesh.triangles.size() / most + 1;
+  for (std::size_t t = 0; t < mesh.triangles.size(); t += step) {
+    unsigned planes = ~0U;
+    for (const std::uint32_t p : mesh.triangles[t]) planes &= planes_of(out_.grid.box, mesh.points[p]);
+    if (planes != 0) continue;
+    Vec3 sum;
+    for (const std::uint32_t p : mesh.triangles[t]) places.push_back(mesh.points[p]), sum += mesh.points[p];
+    places.push_back(sum / 3);
+  }
+  if (places.empty()) return {};
+  std::vector<double> values, distances;
+  feet_->slopes(places, slopes, values);
+  Look look;
+  std::vector<PointNearSurface> middles;
+  for (std::size_t t = 0; t < places.size(); t += 4) {
+    const Vec3 normal = cross(places[t + 1] - places[t], places[t + 2] - places[t]);
+    if (dot(normal, slopes[t + 3]) < 0.5 * norm(normal) * norm(slopes[t + 3]))
+      look.astray += 4.0 / static_cast<double>(places.size());
+    for (std::size_t side = 0; side < 3; ++side) {
+      const std::size_t i = t + side, j = t + (side + 1) % 3;
+      middles.push_back({.point = (places[i] + places[j]) / 2, .slope = std::min(norm(slopes[i]), norm(slopes[j]))});
+    }
+  }
+  feet_->distances(middles, look_near * spacing, distances);
+  for (std::size_t t = 0; t < distances.size(); t += 3) {
+    const double farthest = std::max({distances[t], distances[t + 1], distances[t + 2]});
+    look.triangles_for += std::max(1.0, farthest / options_.tolerance) * static_cast<double>(step);
+  }
+  const auto nth = distances.end() - 1 - static_cast<std::ptrdiff_t>(few * static_cast<double>(distances.size()));
+  std::nth_element(distances.begin(), nth, distances.end());
+  look.distance = *nth;
+  return look;
+}
+
+// The coarsest of grids on which few triangles go astray and few edges are farther from the surface than
+// a quarter of a cell: where a mesh is that close, it turns where the surface turns. Distances in cells go with the
+// spacing, which tells how fine the next one must be.
 bool Making::resolve(Grid grid) {
-  constexpr double near = 0.25, few = 2e-3;
-  constexpr int most_halvings_of_nothing = 3;
-  for (int halvings = 0;; ++halvings) {
+  constexpr int most_grids_of_nothing = 4;
+  for (int nothing = 0;;) {
     const double spacing = largest_spacing(grid);
     if (!contour_on(grid)) return false;
-    const bool empty = out_.mesh.triangles.empty();
-    measure(std::move(out_.mesh), true, options_.tolerance);
+    if (out_.mesh.triangles.empty()) {
+      if (++nothing == most_grids_of_nothing) break;
+      grid = with_spacing(grid.box, spacing / 2);
+      continue;
+    }
+    const Look look = look_at(out_.mesh, spacing);
     if (!go_on()) return false;
-    const bool seen = !empty && refinable_->share_beyond(std::max(near * spacing, options_.tolerance)) <= few;
-    if (seen || (empty && halvings == most_halvings_of_nothing)) return true;
+    const bool follows = look.astray <= few_astray;
     // Where the field has kinks that no grid resolves, a finer one only costs: what it would add, refining adds where
     // it is needed.
-    const auto triangles = static_cast<double>(refinable_->mesh().triangles.size());
-    if (!empty && 4 * triangles > refinable_->triangles_for(options_.tolerance)) return true;
-    grid = with_spacing(grid.box, spacing / 2);
+    const double triangles = static_cast<double>(out_.mesh.triangles.size()) * (is_smooth() ? 1 : 4);
+    if (follows &&
+        (look.distance <= std::max(look_near * spacing, options_.tolerance) || triangles > look.triangles_for))
+      break;
+    const double finer = follows ? std::clamp(look.distance / (look_near * spacing), 1.15, 2.0)
+                                 : std::clamp(std::sqrt(look.astray / few_astray), 1.4, 2.0);
+    grid = with_spacing(grid.box, spacing / finer);
   }
+  measure(std::move(out_.mesh), true, options_.tolerance);
+  return go_on();
 }
 
 bool Making::refine() {
   constexpr int most_rounds = 24;
+  // What normals tell, and what lies between the points that are looked at, is off by a part of it.
+  const double aim = is_smooth() ? 0.7 * options_.tolerance : options_.tolerance;
+  constexpr int patience = 4;
+  std::vector<std::size_t> before;
   for (int round = 0; round < most_rounds; ++round) {
     run_.report("refining", static_cast<double>(round) / most_rounds);
-    if (!fits(std::max(refinable_->triangles_for(options_.tolerance),
-                       static_cast<double>(refinable_->mesh().triangles.size()))))
+    if (!fits(std::max(refinable_->triangles_for(aim), static_cast<double>(refinable_->mesh().triangles.size()))))
       return false;
-    if (refinable_->refine(options_.tolerance) == 0) break;
-    refinable_->measure(options_.tolerance);
+    const std::size_t halved = refinable_->refine(aim);
+    if (halved == 0 && refinable_->normals_were_right(options_.tolerance)) break;
+    // Where more and more edges are halved, what is refined is no surface.
+    before.push_back(halved);
+    if (round >= patience && halved > before[static_cast<std::size_t>(round - patience)]) break;
+    refinable_->measure(aim);
     if (!go_on()) return false;
   }
   return go_on();
@@ -212,7 +322,8 @@ std::optional<AccurateMesh> Making::make(Grid grid) {
     if (!contour_on(grid)) return std::nullopt;
   }
   if (options_.simplify > 0 && !out_.mesh.triangles.empty() && !simplify()) return std::nullopt;
-  if (feet_) out_.surface_samples += feet_->asked();
+  out_.grid_samples = counts_.on_grids;
+  out_.surface_samples = counts_.at_points;
   return std::move(out_);
 }
 

@@ -5,24 +5,35 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace meso::implicit {
 namespace {
 
 constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
 
+// What the normals at both ends tell of an edge's distance is believed if it is below `surely` times the tolerance, or
+// above 1 / `surely` times.
+constexpr double surely = 0.4;
+
+bool tells(double distance, double tolerance) {
+  return std::fabs(distance) <= surely * tolerance || std::fabs(distance) >= tolerance / surely;
+}
+
 }  // namespace
 
-RefinableMesh::RefinableMesh(TriangleMesh mesh, const Box3& box, SurfaceFeet& feet)
-    : mesh_(std::move(mesh)), box_(box), feet_(feet), known_(mesh_.triangles.size()) {
-  std::vector<Vec3> slopes;
-  std::vector<double> values;
-  feet_.slopes(mesh_.points, slopes, values);
-  for (std::size_t i = 0; i < slopes.size(); ++i) {
-    slopes_.push_back(norm(slopes[i]));
-    planes_.push_back(planes_of(box_, mesh_.points[i]));
-    const double distance = planes_.back() != 0 ? 0 : std::fabs(values[i]) / slopes_.back();
-    distances_.push_back(static_cast<float>(std::isfinite(distance) ? distance : 0));
+RefinableMesh::RefinableMesh(TriangleMesh mesh, const Box3& box, SurfaceFeet& feet, bool smooth)
+    : mesh_(std::move(mesh)), box_(box), feet_(feet), smooth_(smooth), known_(mesh_.triangles.size()) {
+  feet_.slopes(mesh_.points, gradients_, values_);
+  for (const Vec3& p : mesh_.points) planes_.push_back(planes_of(box_, p));
+  // Points that have triangles in the box's sides only are where they belong.
+  distances_.assign(mesh_.points.size(), 0);
+  for (std::uint32_t t = 0; t < known_.size(); ++t) {
+    if (plane_of_triangle(t) != 0) continue;
+    for (const std::uint32_t p : mesh_.triangles[t]) {
+      const double distance = std::fabs(values_[p]) / norm(within(planes_[p], gradients_[p]));
+      distances_[p] = static_cast<float>(std::isfinite(distance) ? distance : 0);
+    }
   }
 }
 
@@ -31,11 +42,11 @@ void RefinableMesh::move_vertices(double tolerance) {
   std::vector<std::size_t> which;
   for (std::size_t i = 0; i < distances_.size(); ++i) {
     if (!(distances_[i] > tolerance / 10)) continue;
-    off.push_back({.point = mesh_.points[i]});
+    off.push_back({.point = mesh_.points[i], .planes = planes_[i], .gradient = gradients_[i], .value = values_[i]});
     which.push_back(i);
   }
   std::vector<Foot> feet;
-  feet_.feet(off, tolerance / 100, feet);
+  feet_.feet(off, tolerance / (smooth_ ? 4 : 100), feet);
   for (std::size_t n = 0; n < which.size(); ++n) {
     if (feet[n].distance > 2 * static_cast<double>(distances_[which[n]])) continue;  // of another part of the surface
     mesh_.points[which[n]] = feet[n].point;
@@ -50,8 +61,59 @@ unsigned RefinableMesh::plane_of_triangle(std::uint32_t triangle) const {
 
 PointNearSurface RefinableMesh::middle_of(std::uint32_t a, std::uint32_t b) const {
   const unsigned planes = planes_[a] & planes_[b];
-  // Slopes within a plane of the box may be any smaller.
-  return {(mesh_.points[a] + mesh_.points[b]) / 2, planes, planes != 0 ? 0 : std::min(slopes_[a], slopes_[b])};
+  PointNearSurface middle{.point = (mesh_.points[a] + mesh_.points[b]) / 2, .planes = planes};
+  if (turns_evenly(a, b))
+    middle.gradient = (gradients_[a] + gradients_[b]) / 2;
+  else if (planes == 0)  // slopes within a plane of the box may be any smaller
+    middle.slope = std::min(norm(gradients_[a]), norm(gradients_[b]));
+  return middle;
+}
+
+PointNearSurface RefinableMesh::middle_of(std::uint32_t triangle) const {
+  const auto& [a, b, c] = mesh_.triangles[triangle];
+  PointNearSurface middle{.point = (mesh_.points[a] + mesh_.points[b] + mesh_.points[c]) / 3};
+  if (turns_evenly(a, b) && turns_evenly(b, c) && turns_evenly(c, a))
+    middle.gradient = (gradients_[a] + gradients_[b] + gradients_[c]) / 3;
+  else
+    middle.slope = std::min({norm(gradients_[a]), norm(gradients_[b]), norm(gradients_[c])});
+  return middle;
+}
+
+// Normals at the ends that are up to 60 degrees apart tell what is between them.
+bool RefinableMesh::turns_evenly(std::uint32_t a, std::uint32_t b) const {
+  const unsigned planes = planes_[a] & planes_[b];
+  const Vec3 na = within(planes, gradients_[a]), nb = within(planes, gradients_[b]);
+  return smooth_ && dot(na, nb) > 0.5 * norm(na) * norm(nb);
+}
+
+// By one value each where the gradient is known; else along it, to the surface.
+void RefinableMesh::ask(std::span<const PointNearSurface> points, double tolerance, std::vector<double>& distances) {
+  std::vector<Vec3> simple;
+  std::vector<PointNearSurface> others;
+  for (const PointNearSurface& p : points)
+    if (norm(p.gradient) > 0)
+      simple.push_back(p.point);
+    else
+      others.push_back(p);
+  std::vector<double> values, found;
+  feet_.values(simple, values);
+  feet_.distances(others, tolerance, found);
+  distances.clear();
+  auto value = values.begin(), distance = found.begin();
+  for (const PointNearSurface& p : points)
+    distances.push_back(norm(p.gradient) > 0 ? *value++ / norm(within(p.planes, p.gradient)) : *distance++);
+  for (double& d : distances)
+    if (!std::isfinite(d)) d = 0;
+}
+
+// The cubic that the normals at both ends tell has the heights (9 p - 3 q) / 64, (p - q) / 8 and (3 p - 9 q) / 64 over
+// the quarters of its chord; p and q are its slopes times the chord's length.
+RefinableMesh::Bend RefinableMesh::bend_along(std::uint32_t a, std::uint32_t b) const {
+  const unsigned planes = planes_[a] & planes_[b];
+  const Vec3 na = within(planes, gradients_[a]), nb = within(planes, gradients_[b]);
+  const Vec3 along = mesh_.points[b] - mesh_.points[a];
+  const double p = dot(na, along) / norm(na), q = dot(nb, along) / norm(nb);
+  return {(p - q) / 8, 3.0 / 64 * std::fabs(p + q)};
 }
 
 void RefinableMesh::measure(double tolerance) {
@@ -63,102 +125,176 @@ void RefinableMesh::measure_edges(double tolerance) {
   std::vector<Edge> edges;
   for (std::uint32_t t = 0; t < known_.size(); ++t)
     for (std::uint8_t side = 0; side < 3; ++side) {
-      if (known_[t].edge[side] >= 0) continue;
+      if (known_[t].edge[side] != unknown) continue;
       const std::uint32_t a = mesh_.triangles[t][side], b = mesh_.triangles[t][(side + 1) % 3];
       edges.push_back({std::min(a, b), std::max(a, b), t, side});
     }
   std::sort(edges.begin(), edges.end());
   std::vector<PointNearSurface> asked;
-  std::vector<std::size_t> first_of_asked;
+  std::vector<std::pair<std::size_t, Bend>> first_of_asked;
+  const auto know = [&](std::size_t e, double distance) {
+    for (std::size_t i = e; i < e + 2; ++i)
+      known_[edges[i].triangle].edge[edges[i].side] = static_cast<float>(distance);
+  };
   for (std::size_t e = 0; e + 1 < edges.size(); e += 2) {  // the mesh is closed: every edge twice
     const unsigned p = plane_of_triangle(edges[e].triangle), q = plane_of_triangle(edges[e + 1].triangle);
     if (p != 0 && q != 0) {  // within the box's sides, or where two of them meet
-      known_[edges[e].triangle].edge[edges[e].side] = known_[edges[e + 1].triangle].edge[edges[e + 1].side] = 0;
+      know(e, 0);
       continue;
     }
+    Bend bend;
+    if (turns_evenly(edges[e].a, edges[e].b)) {
+      bend = bend_along(edges[e].a, edges[e].b);
+      if (tells(bend.farthest(), tolerance)) {
+        know(e, bend.farthest());
+        continue;
+      }
+    }
     asked.push_back(middle_of(edges[e].a, edges[e].b));
-    first_of_asked.push_back(e);
+    first_of_asked.push_back({e, bend});
   }
   std::vector<double> distances;
-  feet_.distances(asked, tolerance, distances);
-  for (std::size_t i = 0; i < distances.size(); ++i)
-    for (std::size_t e = first_of_asked[i]; e < first_of_asked[i] + 2; ++e)
-      known_[edges[e].triangle].edge[edges[e].side] = static_cast<float>(distances[i]);
+  ask(asked, tolerance, distances);
+  for (std::size_t i = 0; i < distances.size(); ++i) {
+    auto& [edge, bend] = first_of_asked[i];
+    bend.middle = distances[i];
+    know(edge, bend.farthest());
+  }
 }
 
-// Where an edge is to be halved, the middle will be another one. Of a curved triangle, the middle is 4/9 of the sum of
-// the edges' distances away: less than half of the tolerance where these are less than a third.
+// Where an edge is to be halved, the middle will be another one. Of a triangle curved as a quadratic function is, the
+// middle is 4/9 of the sum of the edges' distances away.
 void RefinableMesh::measure_middles(double tolerance) {
   std::vector<PointNearSurface> asked;
   std::vector<std::uint32_t> triangles;
   for (std::uint32_t t = 0; t < known_.size(); ++t) {
     const auto& edge = known_[t].edge;
-    if (known_[t].middle >= 0 || std::max({edge[0], edge[1], edge[2]}) > tolerance) continue;
-    if (plane_of_triangle(t) != 0 || edge[0] + edge[1] + edge[2] < tolerance) {
+    const auto size = [&](std::size_t side) { return std::fabs(edge[side]); };
+    if (known_[t].middle != unknown || std::max({size(0), size(1), size(2)}) > tolerance) continue;
+    const double told = 4.0 / 9 * (smooth_ ? edge[0] + edge[1] + edge[2] : size(0) + size(1) + size(2));
+    if (plane_of_triangle(t) != 0) {
       known_[t].middle = 0;
-      continue;
+    } else if (smooth_ ? tells(told, tolerance) : told < 4.0 / 9 * tolerance) {
+      known_[t].middle = smooth_ ? static_cast<float>(told) : 0;
+    } else {
+      asked.push_back(middle_of(t));
+      triangles.push_back(t);
     }
-    const auto& [a, b, c] = mesh_.triangles[t];
-    asked.push_back(
-        {(mesh_.points[a] + mesh_.points[b] + mesh_.points[c]) / 3, 0, std::min({slopes_[a], slopes_[b], slopes_[c]})});
-    triangles.push_back(t);
   }
   std::vector<double> distances;
-  feet_.distances(asked, tolerance, distances);
+  ask(asked, tolerance, distances);
   for (std::size_t i = 0; i < distances.size(); ++i) known_[triangles[i]].middle = static_cast<float>(distances[i]);
 }
 
+bool RefinableMesh::normals_were_right(double tolerance) {
+  constexpr std::size_t least = 300, one_of = 200;
+  if (!smooth_) return true;
+  std::vector<PointNearSurface> asked;
+  const std::size_t step = std::clamp<std::size_t>(known_.size() / least, 1, one_of);
+  for (std::uint32_t t = 0; t < known_.size(); t += static_cast<std::uint32_t>(step)) {
+    if (plane_of_triangle(t) != 0) continue;
+    asked.push_back(middle_of(t));
+    const std::size_t side = t / step % 3;
+    asked.push_back(middle_of(mesh_.triangles[t][side], mesh_.triangles[t][(side + 1) % 3]));
+  }
+  for (PointNearSurface& p : asked) p.gradient = {};
+  std::vector<Foot> found;
+  feet_.feet(asked, tolerance / 20, found);
+  if (std::all_of(found.begin(), found.end(), [&](const Foot& f) { return f.distance <= tolerance; })) return true;
+  smooth_ = false;
+  known_.assign(known_.size(), {});
+  return false;
+}
+
 std::size_t RefinableMesh::refine(double tolerance) {
-  std::vector<Edge> edges;
+  struct Cut {
+    Edge edge;
+    float distance;
+    bool operator<(const Cut& c) const { return edge < c.edge; }
+    bool operator==(const Cut& c) const { return edge == c.edge; }
+  };
+  std::vector<Cut> cuts;
   const auto length = [&](std::uint32_t a, std::uint32_t b) { return norm(mesh_.points[a] - mesh_.points[b]); };
+  const auto edge_of = [&](std::uint32_t t, std::size_t side) {
+    const std::uint32_t a = mesh_.triangles[t][side], b = mesh_.triangles[t][(side + 1) % 3];
+    return Edge{std::min(a, b), std::max(a, b), 0, 0};
+  };
   for (std::uint32_t t = 0; t < known_.size(); ++t) {
-    const auto& corners = mesh_.triangles[t];
     const auto add = [&](std::size_t side) {
-      const std::uint32_t a = corners[side], b = corners[(side + 1) % 3];
-      if (length(a, b) > tolerance) edges.push_back({std::min(a, b), std::max(a, b), 0, 0});
+      const Edge e = edge_of(t, side);
+      if (length(e.a, e.b) > tolerance) cuts.push_back({e, known_[t].edge[side]});
     };
     for (std::size_t side = 0; side < 3; ++side)
-      if (known_[t].edge[side] > tolerance) add(side);
-    if (!(known_[t].middle > tolerance)) continue;
+      if (std::fabs(known_[t].edge[side]) > tolerance) add(side);
+    if (known_[t].middle == unknown || !(std::fabs(known_[t].middle) > tolerance)) continue;
     std::size_t longest = 0;
+    const auto side_length = [&](std::size_t side) {
+      const Edge e = edge_of(t, side);
+      return length(e.a, e.b);
+    };
     for (std::size_t side = 1; side < 3; ++side)
-      if (length(corners[side], corners[(side + 1) % 3]) > length(corners[longest], corners[(longest + 1) % 3]))
-        longest = side;
+      if (side_length(side) > side_length(longest)) longest = side;
     add(longest);
   }
-  std::sort(edges.begin(), edges.end());
-  edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
-  if (edges.empty()) return 0;
+  std::sort(cuts.begin(), cuts.end());
+  cuts.erase(std::unique(cuts.begin(), cuts.end()), cuts.end());
+  if (cuts.empty()) return 0;
   std::vector<PointNearSurface> middles;
-  for (const Edge& e : edges) {
-    middles.push_back(middle_of(e.a, e.b));
-    middles.back().slope = 0;
+  for (const Cut& c : cuts) {
+    middles.push_back(middle_of(c.edge.a, c.edge.b));
+    PointNearSurface& middle = middles.back();
+    middle.slope = 0;
+    if (norm(middle.gradient) > 0)
+      middle.value = static_cast<double>(c.distance) * norm(within(middle.planes, middle.gradient));
   }
+  std::vector<std::array<std::uint32_t, 3>> halved(known_.size(), {none, none, none});  // numbers of cuts
+  std::vector<Vec3> normals(cuts.size());
+  for (std::uint32_t t = 0; t < known_.size(); ++t)
+    for (std::size_t side = 0; side < 3; ++side) {
+      const Cut wanted{edge_of(t, side), 0};
+      const auto found = std::lower_bound(cuts.begin(), cuts.end(), wanted);
+      if (found == cuts.end() || !(*found == wanted)) continue;
+      halved[t][side] = static_cast<std::uint32_t>(found - cuts.begin());
+      const auto& [a, b, c] = mesh_.triangles[t];
+      normals[halved[t][side]] += cross(mesh_.points[b] - mesh_.points[a], mesh_.points[c] - mesh_.points[a]);
+    }
   std::vector<Foot> feet;
-  feet_.feet(middles, tolerance / 20, feet);
+  feet_.feet(middles, tolerance / (smooth_ ? 4 : 20), feet);
+  // Where an edge cuts a corner off or goes from sheet to sheet of a wall, the nearest foot may be beside one of its
+  // ends, and would leave another edge as long: these go straight to what is before them.
+  std::vector<std::size_t> across;
+  std::vector<Ray> rays;
+  for (std::size_t i = 0; i < cuts.size(); ++i) {
+    const auto& [a, b] = std::pair(cuts[i].edge.a, cuts[i].edge.b);
+    const double nearer = std::min(norm(feet[i].point - mesh_.points[a]), norm(feet[i].point - mesh_.points[b]));
+    const bool across_wall = dot(gradients_[a], gradients_[b]) < -0.5 * norm(gradients_[a]) * norm(gradients_[b]);
+    if (smooth_ || middles[i].planes != 0 || (nearer > 0.3 * length(a, b) && !across_wall)) continue;
+    across.push_back(i);
+    rays.push_back({middles[i].point, length(a, b) / norm(normals[i]) * normals[i]});
+  }
+  feet_.shoot(rays, tolerance / 20);
+  for (std::size_t n = 0; n < across.size(); ++n) {
+    if (!rays[n].hit) continue;
+    Foot& foot = feet[across[n]];
+    foot = {rays[n].from, 0, foot.gradient};
+  }
   const auto first = static_cast<std::uint32_t>(mesh_.points.size());
-  for (std::size_t i = 0; i < edges.size(); ++i) {
+  for (std::size_t i = 0; i < cuts.size(); ++i) {
     // A foot that is far away belongs to another part of the surface.
-    const bool near = feet[i].distance < 0.5 * length(edges[i].a, edges[i].b);
+    const bool near = feet[i].distance < 0.7 * length(cuts[i].edge.a, cuts[i].edge.b);
     mesh_.points.push_back(near ? feet[i].point : middles[i].point);
     planes_.push_back(planes_of(box_, mesh_.points.back()));
-    slopes_.push_back(feet[i].slope);
+    // In a plane of the box, only a part of the gradient was asked for.
+    const bool part = middles[i].planes != 0 && norm(middles[i].gradient) > 0;
+    gradients_.push_back(part ? middles[i].gradient : feet[i].gradient);
     distances_.push_back(0);
   }
-  const auto count = static_cast<std::uint32_t>(known_.size());
-  for (std::uint32_t t = 0; t < count; ++t) {
-    std::array<std::uint32_t, 3> halved{none, none, none};
-    const auto corners = mesh_.triangles[t];
-    for (std::size_t side = 0; side < 3; ++side) {
-      const std::uint32_t a = corners[side], b = corners[(side + 1) % 3];
-      const Edge wanted{std::min(a, b), std::max(a, b), 0, 0};
-      const auto found = std::lower_bound(edges.begin(), edges.end(), wanted);
-      if (found != edges.end() && *found == wanted)
-        halved[side] = first + static_cast<std::uint32_t>(found - edges.begin());
-    }
-    split(t, halved);
+  for (std::uint32_t t = 0; t < halved.size(); ++t) {
+    for (std::uint32_t& middle : halved[t])
+      if (middle != none) middle += first;
+    split(t, halved[t]);
   }
-  return edges.size();
+  return cuts.size();
 }
 
 // Cut at the middles there are: into two, three (by the shorter diagonal) or four.
@@ -168,7 +304,7 @@ void RefinableMesh::split(std::uint32_t triangle, const std::array<std::uint32_t
   const std::array<std::uint32_t, 3> c = mesh_.triangles[triangle];
   const Known known = known_[triangle];
   bool replaced = false;
-  // Distances of edges that stay are known; -1 elsewhere.
+  // Distances of edges that stay are known.
   const auto put = [&](std::array<std::uint32_t, 3> t, std::array<float, 3> edge) {
     Known k;
     k.edge = edge;
@@ -190,43 +326,42 @@ void RefinableMesh::split(std::uint32_t triangle, const std::array<std::uint32_t
   const auto m = [&](std::size_t i) { return middles[(r + i) % 3]; };
   const auto e = [&](std::size_t i) { return known.edge[(r + i) % 3]; };
   if (count == 3) {
-    for (std::size_t i = 0; i < 3; ++i) put({at(i), m(i), m((i + 2) % 3)}, {-1, -1, -1});
-    put({m(0), m(1), m(2)}, {-1, -1, -1});
+    for (std::size_t i = 0; i < 3; ++i) put({at(i), m(i), m((i + 2) % 3)}, {unknown, unknown, unknown});
+    put({m(0), m(1), m(2)}, {unknown, unknown, unknown});
   } else if (count == 1) {
-    put({at(0), m(0), at(2)}, {-1, -1, e(2)});
-    put({m(0), at(1), at(2)}, {-1, e(1), -1});
+    put({at(0), m(0), at(2)}, {unknown, unknown, e(2)});
+    put({m(0), at(1), at(2)}, {unknown, e(1), unknown});
   } else {
     // Sides 1 and 2 are halved: the corner between them, and a quadrangle 0, 1, m(1), m(2).
-    put({at(2), m(2), m(1)}, {-1, -1, -1});
+    put({at(2), m(2), m(1)}, {unknown, unknown, unknown});
     const auto distance = [&](std::uint32_t p, std::uint32_t q) { return norm(mesh_.points[p] - mesh_.points[q]); };
     if (distance(at(0), m(1)) < distance(at(1), m(2))) {
-      put({at(0), at(1), m(1)}, {e(0), -1, -1});
-      put({at(0), m(1), m(2)}, {-1, -1, -1});
+      put({at(0), at(1), m(1)}, {e(0), unknown, unknown});
+      put({at(0), m(1), m(2)}, {unknown, unknown, unknown});
     } else {
-      put({at(0), at(1), m(2)}, {e(0), -1, -1});
-      put({at(1), m(1), m(2)}, {-1, -1, -1});
+      put({at(0), at(1), m(2)}, {e(0), unknown, unknown});
+      put({at(1), m(1), m(2)}, {unknown, unknown, unknown});
     }
   }
 }
 
+float RefinableMesh::farthest(const Known& known) {
+  float result = 0;
+  for (const float d : {known.edge[0], known.edge[1], known.edge[2], known.middle})
+    if (d != unknown) result = std::max(result, std::fabs(d));
+  return result;
+}
+
 double RefinableMesh::distance() const {
   float largest = distances_.empty() ? 0 : *std::max_element(distances_.begin(), distances_.end());
-  for (const Known& k : known_) largest = std::max({largest, k.edge[0], k.edge[1], k.edge[2], k.middle});
+  for (const Known& k : known_) largest = std::max(largest, farthest(k));
   return largest;
 }
 
 double RefinableMesh::triangles_for(double tolerance) const {
   double sum = 0;
-  for (const Known& k : known_)
-    sum += std::max(1.0, static_cast<double>(std::max({k.edge[0], k.edge[1], k.edge[2], k.middle})) / tolerance);
+  for (const Known& k : known_) sum += std::max(1.0, static_cast<double>(farthest(k)) / tolerance);
   return sum;
-}
-
-double RefinableMesh::share_beyond(double distance) const {
-  std::size_t beyond = 0;
-  for (const Known& k : known_)
-    for (const float edge : k.edge) beyond += edge > distance ? 1 : 0;
-  return known_.empty() ? 0 : static_cast<double>(beyond) / static_cast<double>(3 * known_.size());
 }
 
 }  // namespace meso::implicit

@@ -5,8 +5,14 @@
 // The distance is measured in the middles of edges and triangles. An edge that is too far gets a vertex on the surface;
 // both of its triangles are cut there, so the mesh stays closed and a manifold whatever happens. The distance of an
 // edge goes with the square of its length, so triangles multiply about as distance over tolerance.
+//
+// Of a smooth surface, the normals at an edge's ends tell its distance: by an eighth of what they turn along it. Asked
+// is only where that is near the tolerance; and, in the end, at a few of the others.
 
+#include <algorithm>
+#include <cmath>
 #include <functional>
+#include <limits>
 
 #include "meso/base/triangle_mesh.hpp"
 #include "surface_feet.hpp"
@@ -16,21 +22,23 @@ namespace meso::implicit {
 /// Triangles of a mesh with what is known of them.
 class RefinableMesh {
  public:
-  RefinableMesh(TriangleMesh mesh, const Box3& box, SurfaceFeet& feet);
+  /// `smooth`: the surface has no edges, and the mesh is about as fine as its curves.
+  RefinableMesh(TriangleMesh mesh, const Box3& box, SurfaceFeet& feet, bool smooth);
 
   /// Moves vertices that are farther than a tenth of `tolerance` onto the surface.
   void move_vertices(double tolerance);
-  /// Measures what is not known yet; distances below `tolerance` are told roughly. False: stopped.
+  /// Measures what is not known yet; distances that are not near `tolerance` are told roughly.
   void measure(double tolerance);
   /// Halves the edges whose distance is more; returns how many. Call measure() before.
   std::size_t refine(double tolerance);
+  /// Asks at some of the places whose distance was told by normals; true: no more of them was told wrongly than
+  /// `tolerance` allows. Else all of them are forgotten, and from now on everything is measured.
+  [[nodiscard]] bool normals_were_right(double tolerance);
 
-  /// The largest distance that was measured.
+  /// The largest distance that was measured or told.
   [[nodiscard]] double distance() const;
   /// About how many triangles refining to `tolerance` takes.
   [[nodiscard]] double triangles_for(double tolerance) const;
-  /// The share of edges that are further than `distance` from the surface.
-  [[nodiscard]] double share_beyond(double distance) const;
 
   [[nodiscard]] const TriangleMesh& mesh() const { return mesh_; }
   [[nodiscard]] TriangleMesh take() { return std::move(mesh_); }
@@ -38,9 +46,18 @@ class RefinableMesh {
   static constexpr std::uint64_t bytes_per_triangle = 160;
 
  private:
+  static constexpr float unknown = std::numeric_limits<float>::infinity();
+  /// Distances are negative where the middle is inside.
   struct Known {
-    std::array<float, 3> edge{-1, -1, -1};  ///< distance of the edge after each corner; -1: not measured
-    float middle = -1;
+    std::array<float, 3> edge{unknown, unknown, unknown};  ///< of the edge after each corner
+    float middle = unknown;
+  };
+  /// A curve over its chord: its height over the middle, and what an S adds over the quarters.
+  struct Bend {
+    double middle = 0, quarters = 0;
+    [[nodiscard]] double farthest() const {
+      return std::copysign(std::max(std::fabs(middle), 0.75 * std::fabs(middle) + quarters), middle);
+    }
   };
   struct Edge {
     std::uint32_t a, b;  ///< a < b
@@ -49,19 +66,26 @@ class RefinableMesh {
     friend auto operator<=>(const Edge&, const Edge&) = default;
   };
 
+  [[nodiscard]] static float farthest(const Known& known);
   void measure_edges(double tolerance);
   void measure_middles(double tolerance);
+  void ask(std::span<const PointNearSurface> points, double tolerance, std::vector<double>& distances);
+  [[nodiscard]] bool turns_evenly(std::uint32_t a, std::uint32_t b) const;
+  [[nodiscard]] Bend bend_along(std::uint32_t a, std::uint32_t b) const;
   [[nodiscard]] unsigned plane_of_triangle(std::uint32_t triangle) const;
   [[nodiscard]] PointNearSurface middle_of(std::uint32_t a, std::uint32_t b) const;
+  [[nodiscard]] PointNearSurface middle_of(std::uint32_t triangle) const;
   void split(std::uint32_t triangle, const std::array<std::uint32_t, 3>& middles);
 
   TriangleMesh mesh_;
   Box3 box_;
   SurfaceFeet& feet_;
+  bool smooth_;
   std::vector<Known> known_;
   std::vector<unsigned> planes_;  // of points
-  std::vector<double> slopes_;    // of points
-  std::vector<float> distances_;  // of points; 0 on the box's planes
+  std::vector<Vec3> gradients_;   // at points
+  std::vector<double> values_;    // at the points of the mesh that was given
+  std::vector<float> distances_;  // of points, in the planes of the box that they are on
 };
 
 }  // namespace meso::implicit

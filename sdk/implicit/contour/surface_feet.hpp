@@ -2,6 +2,7 @@
 #pragma once
 // How far points are from the surface of a field, and where on the surface they belong: by its values alone.
 
+#include <cmath>
 #include <functional>
 #include <span>
 #include <vector>
@@ -14,34 +15,45 @@ namespace meso::implicit {
 struct PointNearSurface {
   Vec3 point;
   unsigned planes = 0;
-  double slope = 0;  ///< about that of the field nearby; 0: not known
+  double slope = 0;         ///< about that of the field nearby; 0: not known
+  Vec3 gradient{};          ///< about that of the field here; 0: not known
+  double value = HUGE_VAL;  ///< of the field, if the gradient is known
 };
 
 struct Foot {
   Vec3 point;
   double distance = 0;
-  double slope = 0;  ///< of the field at the point or beside it
+  Vec3 gradient;  ///< of the field at the point or beside it
+};
+
+/// From a point up to that far to both sides.
+struct Ray {
+  Vec3 from, along;
+  bool hit = false;
 };
 
 /// On which sides of the box a point stands: bits 0, 1 are the two across x.
 [[nodiscard]] unsigned planes_of(const Box3& box, Vec3 p);
+/// What is left of a vector in these planes.
+[[nodiscard]] Vec3 within(unsigned planes, Vec3 v);
 
 /// One thread's.
 class SurfaceFeet {
  public:
   SurfaceFeet(const GridSource& source, std::function<bool()> go_on);
 
-  /// How far points are: |f| / |grad f| where that is certainly less or certainly more than `limit`, elsewhere by
-  /// feet().
+  /// How far points are: |f| / |grad f| where that is certainly less than `limit`, elsewhere by feet().
   void distances(std::span<const PointNearSurface> points, double limit, std::vector<double>& out);
   /// The feet of points to within `accuracy`, by Newton's method along the gradient. It is taken anew where it has not
   /// brought the point much closer.
   void feet(std::span<const PointNearSurface> points, double accuracy, std::vector<Foot>& out);
+  /// Moves points along their rays to where the surface is, to within `accuracy`; outwards from inside, and the other
+  /// way. It is looked for at an eighth, a quarter, half and all of the way.
+  void shoot(std::span<Ray> rays, double accuracy);
+  /// The values at points, nothing else.
+  void values(std::span<const Vec3> points, std::vector<double>& out) { ask(points, out); }
   /// Slopes by differences, of a hundred-thousandth of a cell.
   void slopes(std::span<const Vec3> points, std::vector<Vec3>& out, std::vector<double>& values);
-
-  /// Values that were asked for.
-  [[nodiscard]] std::uint64_t asked() const { return asked_; }
 
  private:
   void ask(std::span<const Vec3> points, std::vector<double>& out);
@@ -49,8 +61,7 @@ class SurfaceFeet {
   const Grid& grid_;
   std::unique_ptr<GridSampler> sampler_;
   std::function<bool()> go_on_;
-  std::uint64_t asked_ = 0;
-  std::vector<Vec3> around_, moving_, some_;
+  std::vector<Vec3> around_, moving_;
   std::vector<double> around_values_, values_;
 };
 

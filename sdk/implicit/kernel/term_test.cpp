@@ -5,6 +5,8 @@
 
 #include <cmath>
 
+#include "meso/implicit/surface_edges.hpp"
+
 namespace meso::implicit {
 namespace {
 
@@ -40,6 +42,23 @@ TEST(Term, KeepsSharedNodesShared) {
 TEST(Term, FoldsConstants) {
   EXPECT_TRUE((Term::constant(2) * Term::constant(3)).is_constant());
   EXPECT_TRUE(std::isnan(sqrt(Term::constant(-1)).node().number));
+}
+
+TEST(SurfaceEdges, AreWhereTwoSidesMeetOnTheSurface) {
+  const Box3 box{{-1, -1, -1}, {1, 1, 1}};
+  const auto parsed = expr::parse_expression("sin(a) * cos(y) + z", LengthUnit::millimeter);
+  const Term names[] = {x, y, z};
+  const Term smooth = Term::from_expression(*parsed.expression, names);
+  EXPECT_FALSE(may_have_edges(smooth, box));
+  EXPECT_FALSE(may_have_edges(abs(smooth) - 0.3, box));
+  EXPECT_FALSE(may_have_edges(-(abs(smooth) - 0.3), box));
+  EXPECT_TRUE(may_have_edges(abs(smooth), box));
+  EXPECT_TRUE(may_have_edges(abs(abs(smooth) - 0.3) - 0.1, box));
+  EXPECT_TRUE(may_have_edges(max(smooth, x), box));
+  // Cut at the sides of the box itself, and where one side always wins.
+  EXPECT_FALSE(may_have_edges(max(smooth, abs(x) - 1), box));
+  EXPECT_TRUE(may_have_edges(max(smooth, abs(x) - 0.9), box));
+  EXPECT_FALSE(may_have_edges(min(smooth, x + 9), box));
 }
 
 }  // namespace
