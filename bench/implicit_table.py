@@ -253,12 +253,76 @@ def documents(binaries, pairs, out, folder):
     print(f"\nGyroid of 4³ cells: {report['elements']:,} tetrahedra in {report['seconds']:.2f} s wall, dihedral angles {low:.1f}° to {high:.1f}°.")
 
 
+# A gyroid in a cube of 40 mm: cells of 2.5 mm at one corner, of 10 mm at the other. A cell at x is 2.5 + 0.1875 x long,
+# so its phase is the integral of 1 / (2.5 + 0.1875 x).
+SIDE, PHASE = 40, "log(1 + 0.075*{0})/0.1875"
+GRADED = ("cos(2*pi*X)*sin(2*pi*Y) + cos(2*pi*Y)*sin(2*pi*Z) + cos(2*pi*Z)*sin(2*pi*X)"
+          .replace("X", PHASE.format("x")).replace("Y", PHASE.format("y")).replace("Z", PHASE.format("z")))
+
+
+def farthest_from_graded(ply):
+    """How far points of a mesh's triangles are from the graded gyroid: Newton's steps along its gradient, derived here."""
+    import numpy as np
+
+    def foot(p):
+        angle = 2 * np.pi * np.log(1 + 0.075 * p) / 0.1875
+        s, c = np.sin(angle), np.cos(angle)
+        f = (c * np.roll(s, -1, 1)).sum(1)
+        g = (np.roll(c, 1, 1) * c - s * np.roll(s, -1, 1)) * 2 * np.pi / (2.5 + 0.1875 * p)
+        return p - (f / (g * g).sum(1))[:, None] * g
+
+    with open(ply, "rb") as file:
+        counts, line = {}, b""
+        while line.strip() != b"end_header":
+            line = file.readline()
+            if line.startswith(b"element"):
+                counts[line.split()[1]] = int(line.split()[2])
+        points = np.frombuffer(file.read(12 * counts[b"vertex"]), "<f4").reshape(-1, 3).astype(float)
+        triangles = np.frombuffer(file.read(13 * counts[b"face"]), np.dtype([("n", "u1"), ("corners", "<i4", 3)]))["corners"]
+    places = np.array([[1, 1, 0], [0, 1, 1], [1, 0, 1], [2 / 3] * 3, [4 / 3, 1 / 3, 1 / 3], [1 / 3, 4 / 3, 1 / 3], [1 / 3, 1 / 3, 4 / 3]]) / 2
+    worst = 0
+    for begin in range(0, len(triangles), 100_000):
+        corners = points[triangles[begin:begin + 100_000]]
+        in_side = ((corners == 0).all(1) | (corners == SIDE).all(1)).any(1)
+        at = np.einsum("kj,tjx->tkx", places, corners[~in_side]).reshape(-1, 3)
+        end = at
+        for _ in range(3):
+            end = foot(end)
+        worst = max(worst, np.linalg.norm(end - at, axis=1).max(initial=0))
+    return worst
+
+
+def tolerance(binaries, out):
+    meso = [binaries / "meso", "sdf", "expression", GRADED, "-b", f"0,0,0,{SIDE},{SIDE},{SIDE}", "-o", out, "--json"]
+    told = lambda *more: json.loads(subprocess.run([*meso, *more], stdout=subprocess.PIPE, check=True).stdout)
+    report = told("--tolerance", "0.02")
+    samples = report["accuracy"]["gridSamples"] + report["accuracy"]["surfaceSamples"]
+    error = farthest_from_graded(out)
+    print(f"\nGyroid with cells of 2.5 mm to 10 mm in a cube of {SIDE} mm, --tolerance 0.02: {report['triangles']:,} triangles, "
+          f"{samples:,} samples ({report['accuracy']['gridSamples']:,} on grids); farthest point that was measured "
+          f"{error:.4f} mm.", flush=True)
+    # The coarsest uniform grid that is as close: errors go about with the square of the spacing.
+    nodes, best = 240, None
+    for _ in range(4):
+        told("-s", f"{nodes},{nodes},{nodes}")
+        uniform = farthest_from_graded(out)
+        print(f"{nodes}³ samples, uniform: {uniform:.4f} mm.", flush=True)
+        if uniform <= error:
+            best = min(nodes, best or nodes)
+        following = math.ceil((nodes - 1) * math.sqrt(uniform / error)) + 1
+        if following == nodes or (best and following >= best):
+            break
+        nodes = following
+    if best:
+        print(f"Samples over those of the coarsest uniform grid as close, {best}³: {samples / best ** 3:.3f}.")
+
+
 def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("--pairs", type=int, default=5)
     parser.add_argument("--samples", type=int, default=800, help="along each axis, of the rows beside peers")
     parser.add_argument("--binaries", type=pathlib.Path, default=ROOT / "build/release/bin")
-    parser.add_argument("--only", choices=["peers", "ours", "documents", "kernels"])
+    parser.add_argument("--only", choices=["peers", "ours", "documents", "tolerance", "kernels"])
     parser.add_argument("--write-torus", type=pathlib.Path, help=argparse.SUPPRESS)
     arguments = parser.parse_args()
     if arguments.write_torus:
@@ -273,6 +337,8 @@ def main():
             ours_alone(arguments.binaries, arguments.pairs, folder / "out.ply", folder)
         if arguments.only in (None, "documents"):
             documents(arguments.binaries, arguments.pairs, folder / "out.ply", folder)
+        if arguments.only in (None, "tolerance"):
+            tolerance(arguments.binaries, folder / "out.ply")
         if arguments.only in (None, "kernels"):
             kernels(arguments.binaries)
 

@@ -92,7 +92,7 @@ class Making {
     double distance = 0;       ///< few edges are farther
     double triangles_for = 0;  ///< about how many triangles the tolerance takes
   };
-  static constexpr double look_near = 0.27, few = 2e-3, few_astray = 2e-3;
+  static constexpr double look_near = 0.27, few = 2e-3, few_astray = 1e-2;
   Look look_at(const TriangleMesh& mesh, double spacing);
   bool resolve(Grid grid);
   bool refine();

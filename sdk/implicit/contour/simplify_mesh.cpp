@@ -4,18 +4,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <iterator>
-#include <limits>
 #include <queue>
 #include <tuple>
 
-#include "plane_fit.hpp"
+#include "mesh_links.hpp"
 #include "surface_feet.hpp"
 
 namespace meso::implicit {
 namespace {
-
-constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
 
 /// The weighted sum of squared distances to planes, seen from a point of the mesh: p' a p + 2 b p + c.
 struct Quadric {
@@ -60,7 +56,7 @@ struct Quadric {
 class Simplify {
  public:
   Simplify(TriangleMesh& mesh, const Box3& box, double bound)
-      : points_(mesh.points), triangles_(mesh.triangles), limit_(bound * bound / 4) {
+      : points_(mesh.points), triangles_(mesh.triangles), links_(mesh), limit_(bound * bound / 4) {
     eye_ = points_.empty() ? Vec3{} : points_[0];
     for (const Vec3& p : points_) planes_.push_back(planes_of(box, p));
   }
@@ -75,45 +71,21 @@ class Simplify {
     friend bool operator>(const Collapse& x, const Collapse& y) { return x.key() > y.key(); }
   };
 
-  void link_corners();
   void push(std::uint32_t a, std::uint32_t b);
   [[nodiscard]] bool best_place(std::uint32_t a, std::uint32_t b, Vec3& place, double& cost) const;
-  [[nodiscard]] bool keeps_manifold(std::uint32_t a, std::uint32_t b);
   [[nodiscard]] bool keeps_sides(std::uint32_t moved, std::uint32_t other, Vec3 place) const;
   void collapse(std::uint32_t a, std::uint32_t b, Vec3 place);
-  void compact();
-  template <class Visit>
-  void visit_triangles(std::uint32_t point, Visit visit) const {
-    for (std::uint32_t c = head_[point]; c != none; c = next_[c])
-      if (triangles_[c / 3][0] != none) visit(c / 3);
-  }
-  void neighbours(std::uint32_t point, std::vector<std::uint32_t>& out) const;
-  [[nodiscard]] bool has(std::uint32_t triangle, std::uint32_t point) const {
-    const auto& t = triangles_[triangle];
-    return t[0] == point || t[1] == point || t[2] == point;
-  }
 
   std::vector<Vec3>& points_;
   std::vector<std::array<std::uint32_t, 3>>& triangles_;
+  MeshLinks links_;
   double limit_;
   Vec3 eye_;
   std::vector<unsigned> planes_;
   std::vector<Quadric> quadrics_;
-  std::vector<std::uint32_t> version_, head_, tail_, next_;
-  std::vector<std::uint32_t> near_a_, near_b_, common_;
+  std::vector<std::uint32_t> version_, near_;
   std::priority_queue<Collapse, std::vector<Collapse>, std::greater<>> queue_;
 };
-
-void Simplify::link_corners() {
-  head_.assign(points_.size(), none);
-  tail_.assign(points_.size(), none);
-  next_.assign(3 * triangles_.size(), none);
-  for (std::uint32_t c = 0; c < next_.size(); ++c) {
-    const std::uint32_t p = triangles_[c / 3][c % 3];
-    (head_[p] == none ? head_[p] : next_[tail_[p]]) = c;
-    tail_[p] = c;
-  }
-}
 
 // A point on planes of the box moves onto one that is on them, too.
 bool Simplify::best_place(std::uint32_t a, std::uint32_t b, Vec3& place, double& cost) const {
@@ -143,34 +115,12 @@ void Simplify::push(std::uint32_t a, std::uint32_t b) {
   if (best_place(a, b, place, cost)) queue_.push({cost, a, b, version_[a] + version_[b]});
 }
 
-void Simplify::neighbours(std::uint32_t point, std::vector<std::uint32_t>& out) const {
-  out.clear();
-  visit_triangles(point, [&](std::uint32_t t) {
-    for (const std::uint32_t p : triangles_[t])
-      if (p != point) out.push_back(p);
-  });
-  std::sort(out.begin(), out.end());
-  out.erase(std::unique(out.begin(), out.end()), out.end());
-}
-
-// The link condition; and four triangles must be left over.
-bool Simplify::keeps_manifold(std::uint32_t a, std::uint32_t b) {
-  neighbours(a, near_a_);
-  neighbours(b, near_b_);
-  common_.clear();
-  std::set_intersection(near_a_.begin(), near_a_.end(), near_b_.begin(), near_b_.end(), std::back_inserter(common_));
-  if (common_.size() != 2 || near_a_.size() + near_b_.size() < 9) return false;
-  unsigned at_edge = 0;
-  visit_triangles(a, [&](std::uint32_t t) { at_edge += has(t, b) ? 1 : 0; });
-  return at_edge == 2;
-}
-
 // No triangle that is left turns by more than 60 degrees, or gets very narrow.
 bool Simplify::keeps_sides(std::uint32_t moved, std::uint32_t other, Vec3 place) const {
   constexpr double narrow = 0.02;  // altitude over longest side
   bool good = true;
-  visit_triangles(moved, [&](std::uint32_t t) {
-    if (!good || has(t, other)) return;
+  links_.visit_triangles(moved, [&](std::uint32_t t) {
+    if (!good || links_.is_corner(t, other)) return;
     std::array<Vec3, 3> before, after;
     for (std::size_t i = 0; i < 3; ++i) {
       before[i] = points_[triangles_[t][i]];
@@ -194,22 +144,13 @@ void Simplify::collapse(std::uint32_t a, std::uint32_t b, Vec3 place) {
   points_[a] = place;
   planes_[a] |= planes_[b];
   quadrics_[a] += quadrics_[b];
-  visit_triangles(b, [&](std::uint32_t t) {
-    if (has(t, a))
-      triangles_[t][0] = none;
-    else
-      std::replace(triangles_[t].begin(), triangles_[t].end(), b, a);
-  });
-  next_[tail_[a]] = head_[b];
-  tail_[a] = tail_[b];
-  head_[b] = none;
+  links_.collapse(b, a);
   version_[a] += version_[b] + 1;
-  neighbours(a, near_a_);
-  for (const std::uint32_t n : near_a_) push(a, n);
+  links_.neighbours(a, near_);
+  for (const std::uint32_t n : near_) push(a, n);
 }
 
 bool Simplify::run(const RunOptions& run) {
-  link_corners();
   quadrics_.resize(points_.size());
   version_.assign(points_.size(), 0);
   for (const auto& t : triangles_) {
@@ -227,30 +168,16 @@ bool Simplify::run(const RunOptions& run) {
     const Collapse next = queue_.top();
     queue_.pop();
     const std::uint32_t a = next.a, b = next.b;
-    if (head_[a] == none || head_[b] == none || next.version != version_[a] + version_[b]) continue;
+    if (!links_.has_point(a) || !links_.has_point(b) || next.version != version_[a] + version_[b]) continue;
     Vec3 place;
     double cost = 0;
-    if (!best_place(a, b, place, cost) || !keeps_manifold(a, b) || !keeps_sides(a, b, place) ||
+    if (!best_place(a, b, place, cost) || !links_.stays_manifold(a, b) || !keeps_sides(a, b, place) ||
         !keeps_sides(b, a, place))
       continue;
     collapse(a, b, place);
   }
-  compact();
+  links_.compact();
   return true;
-}
-
-void Simplify::compact() {
-  std::erase_if(triangles_, [](const auto& t) { return t[0] == none; });
-  std::vector<std::uint32_t>& number = tail_;
-  std::uint32_t kept = 0;
-  for (std::uint32_t p = 0; p < points_.size(); ++p) {
-    if (head_[p] == none) continue;
-    points_[kept] = points_[p];
-    number[p] = kept++;
-  }
-  points_.resize(kept);
-  for (auto& t : triangles_)
-    for (std::uint32_t& p : t) p = number[p];
 }
 
 }  // namespace

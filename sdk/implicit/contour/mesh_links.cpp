@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "mesh_links.hpp"
+
+#include <algorithm>
+#include <iterator>
+
+namespace meso::implicit {
+
+MeshLinks::MeshLinks(TriangleMesh& mesh)
+    : points_(mesh.points),
+      triangles_(mesh.triangles),
+      head_(points_.size(), none),
+      tail_(points_.size(), none),
+      next_(3 * triangles_.size(), none) {
+  for (std::uint32_t c = 0; c < next_.size(); ++c) {
+    const std::uint32_t p = triangles_[c / 3][c % 3];
+    (head_[p] == none ? head_[p] : next_[tail_[p]]) = c;
+    tail_[p] = c;
+  }
+}
+
+void MeshLinks::neighbours(std::uint32_t point, std::vector<std::uint32_t>& out) const {
+  out.clear();
+  visit_triangles(point, [&](std::uint32_t t) {
+    for (const std::uint32_t p : triangles_[t])
+      if (p != point) out.push_back(p);
+  });
+  std::sort(out.begin(), out.end());
+  out.erase(std::unique(out.begin(), out.end()), out.end());
+}
+
+bool MeshLinks::stays_manifold(std::uint32_t a, std::uint32_t b) {
+  neighbours(a, near_a_);
+  neighbours(b, near_b_);
+  common_.clear();
+  std::set_intersection(near_a_.begin(), near_a_.end(), near_b_.begin(), near_b_.end(), std::back_inserter(common_));
+  if (common_.size() != 2 || near_a_.size() + near_b_.size() < 9) return false;
+  // Two triangles at the edge: both opposite corners are the common neighbours.
+  unsigned at_edge = 0;
+  visit_triangles(a, [&](std::uint32_t t) { at_edge += is_corner(t, b) ? 1 : 0; });
+  return at_edge == 2;
+}
+
+void MeshLinks::collapse(std::uint32_t from, std::uint32_t onto) {
+  visit_triangles(from, [&](std::uint32_t t) {
+    if (is_corner(t, onto))
+      triangles_[t][0] = none;
+    else
+      std::replace(triangles_[t].begin(), triangles_[t].end(), from, onto);
+  });
+  next_[tail_[onto]] = head_[from];
+  tail_[onto] = tail_[from];
+  head_[from] = none;
+}
+
+void MeshLinks::compact() {
+  std::erase_if(triangles_, [](const std::array<std::uint32_t, 3>& t) { return t[0] == none; });
+  std::uint32_t kept = 0;
+  for (std::uint32_t p = 0; p < points_.size(); ++p) {
+    if (!has_point(p)) continue;
+    points_[kept] = points_[p];
+    tail_[p] = kept++;  // its new number
+  }
+  points_.resize(kept);
+  for (std::array<std::uint32_t, 3>& t : triangles_)
+    for (std::uint32_t& p : t) p = tail_[p];
+}
+
+}  // namespace meso::implicit
