@@ -260,7 +260,7 @@ GRADED = ("cos(2*pi*X)*sin(2*pi*Y) + cos(2*pi*Y)*sin(2*pi*Z) + cos(2*pi*Z)*sin(2
           .replace("X", PHASE.format("x")).replace("Y", PHASE.format("y")).replace("Z", PHASE.format("z")))
 
 
-def farthest_from_graded(ply):
+def farthest_from_graded(ply, every=1):
     """How far points of a mesh's triangles are from the graded gyroid: Newton's steps along its gradient, derived here."""
     import numpy as np
 
@@ -278,7 +278,7 @@ def farthest_from_graded(ply):
             if line.startswith(b"element"):
                 counts[line.split()[1]] = int(line.split()[2])
         points = np.frombuffer(file.read(12 * counts[b"vertex"]), "<f4").reshape(-1, 3).astype(float)
-        triangles = np.frombuffer(file.read(13 * counts[b"face"]), np.dtype([("n", "u1"), ("corners", "<i4", 3)]))["corners"]
+        triangles = np.frombuffer(file.read(13 * counts[b"face"]), np.dtype([("n", "u1"), ("corners", "<i4", 3)]))["corners"][::every]
     places = np.array([[1, 1, 0], [0, 1, 1], [1, 0, 1], [2 / 3] * 3, [4 / 3, 1 / 3, 1 / 3], [1 / 3, 4 / 3, 1 / 3], [1 / 3, 1 / 3, 4 / 3]]) / 2
     worst = 0
     for begin in range(0, len(triangles), 100_000):
@@ -301,11 +301,12 @@ def tolerance(binaries, out):
     print(f"\nGyroid with cells of 2.5 mm to 10 mm in a cube of {SIDE} mm, --tolerance 0.02: {report['triangles']:,} triangles, "
           f"{samples:,} samples ({report['accuracy']['gridSamples']:,} on grids); farthest point that was measured "
           f"{error:.4f} mm.", flush=True)
-    # The coarsest uniform grid that is as close: errors go about with the square of the spacing.
-    nodes, best = 240, None
+    # The coarsest uniform grid that is as close: errors go about with the square of the spacing. Of its many triangles,
+    # a part is looked at, which is in its favour.
+    nodes, best = 336, None
     for _ in range(4):
         told("-s", f"{nodes},{nodes},{nodes}")
-        uniform = farthest_from_graded(out)
+        uniform = farthest_from_graded(out, every=8)
         print(f"{nodes}³ samples, uniform: {uniform:.4f} mm.", flush=True)
         if uniform <= error:
             best = min(nodes, best or nodes)

@@ -92,7 +92,7 @@ class Making {
     double distance = 0;       ///< few edges are farther
     double triangles_for = 0;  ///< about how many triangles the tolerance takes
   };
-  static constexpr double look_near = 0.27, few = 2e-3, few_astray = 1e-2;
+  static constexpr double look_near = 0.27, few = 2e-3, few_astray = 5e-3;
   Look look_at(const TriangleMesh& mesh, double spacing);
   bool resolve(Grid grid);
   bool refine();
@@ -262,7 +262,7 @@ bool Making::refine() {
   constexpr int most_rounds = 24;
   // What normals tell, and what lies between the points that are looked at, is off by a part of it.
   const double aim = is_smooth() ? 0.7 * options_.tolerance : options_.tolerance;
-  constexpr int patience = 4;
+  constexpr int patience = 8;
   std::vector<std::size_t> before;
   for (int round = 0; round < most_rounds; ++round) {
     run_.report("refining", static_cast<double>(round) / most_rounds);

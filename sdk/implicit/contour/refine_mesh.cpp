@@ -79,6 +79,26 @@ PointNearSurface RefinableMesh::middle_of(std::uint32_t triangle) const {
   return middle;
 }
 
+Vec3 RefinableMesh::normal_of(std::uint32_t triangle) const {
+  const auto& [a, b, c] = mesh_.triangles[triangle];
+  return cross(mesh_.points[b] - mesh_.points[a], mesh_.points[c] - mesh_.points[a]);
+}
+
+// Beside an edge of the surface, the field may be that of the sheet that is farther away. The mesh's own normal, which
+// comes as the ray's direction, leads to the one before it.
+void RefinableMesh::look_ahead(std::span<Ray> rays, double tolerance, std::vector<double>& distances) {
+  std::vector<Ray> far;
+  std::vector<std::size_t> which;
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    if (smooth_ || !(distances[i] > tolerance)) continue;
+    far.push_back({rays[i].from, distances[i] / norm(rays[i].along) * rays[i].along});
+    which.push_back(i);
+  }
+  feet_.shoot(far, tolerance / 20);
+  for (std::size_t n = 0; n < far.size(); ++n)
+    if (far[n].hit) distances[which[n]] = std::min(distances[which[n]], norm(far[n].from - rays[which[n]].from));
+}
+
 // Normals at the ends that are up to 60 degrees apart tell what is between them.
 bool RefinableMesh::turns_evenly(std::uint32_t a, std::uint32_t b) const {
   const unsigned planes = planes_[a] & planes_[b];
@@ -131,6 +151,7 @@ void RefinableMesh::measure_edges(double tolerance) {
     }
   std::sort(edges.begin(), edges.end());
   std::vector<PointNearSurface> asked;
+  std::vector<Ray> rays;
   std::vector<std::pair<std::size_t, Bend>> first_of_asked;
   const auto know = [&](std::size_t e, double distance) {
     for (std::size_t i = e; i < e + 2; ++i)
@@ -151,10 +172,13 @@ void RefinableMesh::measure_edges(double tolerance) {
       }
     }
     asked.push_back(middle_of(edges[e].a, edges[e].b));
+    const Vec3 normal = normal_of(edges[e].triangle) + normal_of(edges[e + 1].triangle);
+    rays.push_back({asked.back().point, within(asked.back().planes, normal)});
     first_of_asked.push_back({e, bend});
   }
   std::vector<double> distances;
   ask(asked, tolerance, distances);
+  look_ahead(rays, tolerance, distances);
   for (std::size_t i = 0; i < distances.size(); ++i) {
     auto& [edge, bend] = first_of_asked[i];
     bend.middle = distances[i];
@@ -166,6 +190,7 @@ void RefinableMesh::measure_edges(double tolerance) {
 // middle is 4/9 of the sum of the edges' distances away.
 void RefinableMesh::measure_middles(double tolerance) {
   std::vector<PointNearSurface> asked;
+  std::vector<Ray> rays;
   std::vector<std::uint32_t> triangles;
   for (std::uint32_t t = 0; t < known_.size(); ++t) {
     const auto& edge = known_[t].edge;
@@ -178,11 +203,13 @@ void RefinableMesh::measure_middles(double tolerance) {
       known_[t].middle = smooth_ ? static_cast<float>(told) : 0;
     } else {
       asked.push_back(middle_of(t));
+      rays.push_back({asked.back().point, normal_of(t)});
       triangles.push_back(t);
     }
   }
   std::vector<double> distances;
   ask(asked, tolerance, distances);
+  look_ahead(rays, tolerance, distances);
   for (std::size_t i = 0; i < distances.size(); ++i) known_[triangles[i]].middle = static_cast<float>(distances[i]);
 }
 
@@ -255,28 +282,27 @@ std::size_t RefinableMesh::refine(double tolerance) {
       const auto found = std::lower_bound(cuts.begin(), cuts.end(), wanted);
       if (found == cuts.end() || !(*found == wanted)) continue;
       halved[t][side] = static_cast<std::uint32_t>(found - cuts.begin());
-      const auto& [a, b, c] = mesh_.triangles[t];
-      normals[halved[t][side]] += cross(mesh_.points[b] - mesh_.points[a], mesh_.points[c] - mesh_.points[a]);
+      normals[halved[t][side]] += normal_of(t);
     }
   std::vector<Foot> feet;
   feet_.feet(middles, tolerance / (smooth_ ? 4 : 20), feet);
-  // Where an edge cuts a corner off or goes from sheet to sheet of a wall, the nearest foot may be beside one of its
-  // ends, and would leave another edge as long: these go straight to what is before them.
-  std::vector<std::size_t> across;
+  // Where an edge cuts a corner off or goes from sheet to sheet of a wall, the field leads to a foot that is too far,
+  // or beside one of the ends, which would leave another edge as long: what is before the mesh is nearer.
+  std::vector<std::size_t> before;
   std::vector<Ray> rays;
   for (std::size_t i = 0; i < cuts.size(); ++i) {
-    const auto& [a, b] = std::pair(cuts[i].edge.a, cuts[i].edge.b);
-    const double nearer = std::min(norm(feet[i].point - mesh_.points[a]), norm(feet[i].point - mesh_.points[b]));
-    const bool across_wall = dot(gradients_[a], gradients_[b]) < -0.5 * norm(gradients_[a]) * norm(gradients_[b]);
-    if (smooth_ || middles[i].planes != 0 || (nearer > 0.3 * length(a, b) && !across_wall)) continue;
-    across.push_back(i);
-    rays.push_back({middles[i].point, length(a, b) / norm(normals[i]) * normals[i]});
+    if (smooth_ || middles[i].planes != 0) continue;
+    before.push_back(i);
+    rays.push_back({middles[i].point, length(cuts[i].edge.a, cuts[i].edge.b) / norm(normals[i]) * normals[i]});
   }
   feet_.shoot(rays, tolerance / 20);
-  for (std::size_t n = 0; n < across.size(); ++n) {
-    if (!rays[n].hit) continue;
-    Foot& foot = feet[across[n]];
-    foot = {rays[n].from, 0, foot.gradient};
+  for (std::size_t n = 0; n < before.size(); ++n) {
+    Foot& foot = feet[before[n]];
+    const auto [a, b] = std::pair(cuts[before[n]].edge.a, cuts[before[n]].edge.b);
+    const double nearer = std::min(norm(foot.point - mesh_.points[a]), norm(foot.point - mesh_.points[b]));
+    const double ahead = norm(rays[n].from - middles[before[n]].point);
+    if (rays[n].hit && (ahead < foot.distance || nearer < 0.3 * length(a, b)))
+      foot = {rays[n].from, ahead, foot.gradient};
   }
   const auto first = static_cast<std::uint32_t>(mesh_.points.size());
   for (std::size_t i = 0; i < cuts.size(); ++i) {

@@ -70,6 +70,8 @@ class RefinableMesh {
   void measure_edges(double tolerance);
   void measure_middles(double tolerance);
   void ask(std::span<const PointNearSurface> points, double tolerance, std::vector<double>& distances);
+  void look_ahead(std::span<Ray> rays, double tolerance, std::vector<double>& distances);
+  [[nodiscard]] Vec3 normal_of(std::uint32_t triangle) const;
   [[nodiscard]] bool turns_evenly(std::uint32_t a, std::uint32_t b) const;
   [[nodiscard]] Bend bend_along(std::uint32_t a, std::uint32_t b) const;
   [[nodiscard]] unsigned plane_of_triangle(std::uint32_t triangle) const;
