@@ -31,18 +31,21 @@ class WorkingMesh final : public MemoryMeshSink {
   [[nodiscard]] std::uint64_t bytes_per_triangle() const override { return RefinableMesh::bytes_per_triangle; }
 };
 
-/// Counts the samples that another source gives, wherever they are taken.
+/// Counts the samples that another source gives, on its grid and wherever else they are taken.
 class CountedSource final : public GridSource {
  public:
   struct Counts {
-    std::atomic<std::uint64_t> on_grids{0}, at_points{0};
+    std::uint64_t on_grids = 0;
+    std::atomic<std::uint64_t> at_points{0};
   };
 
-  CountedSource(std::unique_ptr<GridSource> source, Counts& counts) : source_(std::move(source)), counts_(counts) {}
+  CountedSource(std::unique_ptr<GridSource> source, Counts& counts) : source_(std::move(source)), counts_(counts) {
+    counts_.on_grids += grid().node_count();  // planes between bricks, which two threads may sample, once
+  }
 
   [[nodiscard]] const Grid& grid() const override { return source_->grid(); }
   [[nodiscard]] std::unique_ptr<GridSampler> sampler() const override {
-    return std::make_unique<Sampler>(source_->sampler(), grid().nodes[0], counts_);
+    return std::make_unique<Sampler>(source_->sampler(), counts_);
   }
   [[nodiscard]] bool signs_only() const override { return source_->signs_only(); }
   [[nodiscard]] double exact_within() const override { return source_->exact_within(); }
@@ -51,11 +54,9 @@ class CountedSource final : public GridSource {
  private:
   class Sampler final : public GridSampler {
    public:
-    Sampler(std::unique_ptr<GridSampler> sampler, std::int32_t nodes, Counts& counts)
-        : sampler_(std::move(sampler)), nodes_(static_cast<std::uint64_t>(nodes)), counts_(counts) {}
+    Sampler(std::unique_ptr<GridSampler> sampler, Counts& counts) : sampler_(std::move(sampler)), counts_(counts) {}
     void begin_slab(std::int32_t first, std::int32_t last) override { sampler_->begin_slab(first, last); }
     void row(std::int32_t j, std::int32_t k, float* values, std::uint64_t* inside) override {
-      counts_.on_grids += nodes_;
       sampler_->row(j, k, values, inside);
     }
     void values_at(std::span<const Vec3> points, double* out) override {
@@ -65,7 +66,6 @@ class CountedSource final : public GridSource {
 
    private:
     std::unique_ptr<GridSampler> sampler_;
-    std::uint64_t nodes_;
     Counts& counts_;
   };
 
