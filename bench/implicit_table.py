@@ -6,10 +6,11 @@
 
 Ours and each peer run alternately, so that a neighbour's load meets both; figures are medians, ratios are medians of the
 pairs' ratios. CPU is user plus system time of the whole process, file included. Peers that are not installed
-(scripts/install-deps.sh --all) are left out. Error: distance of vertices from the surface, first order |f| / |grad f|, in
+(scripts/install-deps.sh --all) are left out; the row of --tolerance needs numpy. Error: distance of vertices from the surface, first order |f| / |grad f|, in
 grid spacings, of 50 000 vertices that do not lie in the box planes.
 """
 import argparse
+import importlib.util
 import json
 import math
 import os
@@ -293,6 +294,9 @@ def farthest_from_graded(ply, every=1):
 
 
 def tolerance(binaries, out):
+    if importlib.util.find_spec("numpy") is None:
+        print("\nThe row of --tolerance needs numpy, which this Python has not (Debian: /usr/bin/python3).")
+        return
     meso = [binaries / "meso", "sdf", "expression", GRADED, "-b", f"0,0,0,{SIDE},{SIDE},{SIDE}", "-o", out, "--json"]
     told = lambda *more: json.loads(subprocess.run([*meso, *more], stdout=subprocess.PIPE, check=True).stdout)
     report = told("--tolerance", "0.02")
