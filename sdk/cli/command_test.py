@@ -379,7 +379,9 @@ class Outputs(CommandTest):
         shutil.copy(BEAM.parent / "ibeam.step", self.folder)
         beam = shutil.copy(BEAM, self.folder)
         small = self.file("small.meso", document())
-        for source, name, values in ((beam, "a.step", ["--set", "pitch=10mm"]), (beam, "a.stl", ["--set", "pitch=10mm"]), (small, "a.brep", [])):
+        drilled, ball = (BEAM.parents[1] / "documents" / name for name in ("drilled_plate.meso", "bcc_ball.meso"))
+        for source, name, values in ((beam, "a.step", ["--set", "pitch=10mm"]), (beam, "a.stl", ["--set", "pitch=10mm"]), (small, "a.brep", []),
+                                     (drilled, "b.stl", []), (ball, "b.step", [])):
             variants = [["--jobs", "1"], ["--jobs", "2"], ["--jobs", "7"], ["--jobs", "7"]]
             seen = set()
             for number, flags in enumerate(variants):
