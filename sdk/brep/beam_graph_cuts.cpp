@@ -17,6 +17,7 @@ constexpr std::array widest_empty{1.0, 0.8, 0.6, 0.4, 0.3};  // radians from a p
 constexpr double beside_caps = 0.02;                         // radians between a cut and the caps that it passes
 constexpr double least_cosine = 0.25;                        // of a face's border, seen from its middle
 constexpr int spread_points = 120;
+constexpr double straight = 1.5e-6;  // radians between axes that are one line
 
 Vec3 unit(Vec3 v) { return v / norm(v); }
 Vec3 across(Vec3 v) { return unit(cross(v, std::fabs(v.x) < 0.6 ? Vec3{1, 0, 0} : Vec3{0, 1, 0})); }
@@ -36,10 +37,37 @@ class CutGraph {
       drop_cuts();
       return result();
     }
-    return {};
+    return cap_count_ == 2 ? divide_sickle() : BallCuts{};
   }
 
  private:
+  /// What two circles leave of a ball where a line of struts bends a little: too narrow for any of the points above.
+  BallCuts divide_sickle() {
+    if (angle_between(sites_[0].axis, sites_[1].axis) > pi - straight) return {};  // a zone, even all around
+    sites_.resize(cap_count_);
+    for (const double turn : {pi / 2, pi, 3 * pi / 2}) sites_.push_back({between_caps(turn), 0});
+    connect();
+    if (!is_good()) return {};
+    drop_cuts();
+    return result();
+  }
+
+  /// As far from one of two circles as from the other, so far about the first one's axis from where they are nearest.
+  [[nodiscard]] Vec3 between_caps(double turn) const {
+    const auto& [axis, angle] = sites_[0];
+    const BallCap& other = sites_[1];
+    const Vec3 x = unit(other.axis - dot(other.axis, axis) * axis);
+    const Vec3 way = std::cos(turn) * x + std::sin(turn) * cross(axis, x);
+    Vec3 p;
+    double low = angle, high = pi;
+    for (int i = 0; i < 60; ++i) {
+      const double middle = (low + high) / 2;
+      p = std::cos(middle) * axis + std::sin(middle) * way;
+      (middle - angle < angle_between(p, other.axis) - other.angle ? low : high) = middle;
+    }
+    return p;
+  }
+
   using Face = std::vector<std::uint32_t>;  ///< half edges
   struct Edge {
     std::array<std::uint32_t, 2> site{};
@@ -88,7 +116,8 @@ class CutGraph {
     for (std::uint32_t b = 0; b < sites_.size(); ++b)
       for (std::uint32_t a = 0; a < b; ++a) {
         const double gap = gap_of(a, b);
-        if (gap >= longest_cut || angle_between(sites_[a].axis, sites_[b].axis) > pi - near_gap) continue;
+        const double from_line = pi - angle_between(sites_[a].axis, sites_[b].axis);
+        if (gap >= longest_cut || from_line < (gap < near_gap ? straight : near_gap)) continue;
         wanted.emplace_back(std::llround(gap * 1e9), Edge{{a, b}, gap});
       }
     std::ranges::stable_sort(wanted, {}, [](const auto& w) { return std::get<0>(w); });

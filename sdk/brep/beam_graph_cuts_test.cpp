@@ -9,6 +9,8 @@
 namespace meso::brep {
 namespace {
 
+constexpr double pi = std::numbers::pi;
+
 Vec3 unit(Vec3 v) { return v / norm(v); }
 double between(Vec3 a, Vec3 b) { return std::acos(std::min(1.0, dot(unit(a), unit(b)))); }
 
@@ -58,13 +60,39 @@ TEST(BallCuts, WhereNoCapIsNearPointsDivide) {
   }
 }
 
+TEST(BallCuts, ASickleIsDividedHoweverNarrow) {
+  for (const double bend : {1.2, 0.4, 0.1, 1e-2, 1e-3, 1e-5})
+    for (const double gap : {0.0, 1e-6, 1e-3, 0.04})
+      for (const double larger : {0.0, 0.1, 0.4}) {
+        const double angle = (pi - bend - gap) / 2;
+        const std::vector<BallCap> caps{{{0, 0, 1}, angle + larger},
+                                        {{std::sin(bend), 0, -std::cos(bend)}, angle - larger}};
+        const BallCuts made = cuts_between(caps);
+        ASSERT_FALSE(made.cuts.empty()) << bend << ' ' << gap << ' ' << larger;
+        for (const Vec3& p : made.points)
+          for (const BallCap& cap : caps) EXPECT_GT(angle_between(p, cap.axis), cap.angle);
+        // None runs through the other circle.
+        for (const auto& [a, b] : made.cuts) {
+          const Vec3 u = site(caps, made, a), v = site(caps, made, b);
+          for (std::uint32_t k = 0; k < 2; ++k)
+            for (int i = 0; k != a && k != b && i <= 20; ++i)
+              EXPECT_GT(angle_between(unit((1 - i / 20.0) * u + (i / 20.0) * v), caps[k].axis), caps[k].angle);
+        }
+        EXPECT_GE(faces_of(caps, made, gap == 0 ? 1 : 0), 2u);
+      }
+}
+
+TEST(BallCuts, AZoneIsLeftWhole) {
+  EXPECT_TRUE(cuts_between({{{0, 0, 1}, pi / 2 - 0.01}, {{0, 0, -1}, pi / 2 - 0.01}}).cuts.empty());
+}
+
 TEST(BallCuts, NoCutMeetsACapOrAnother) {
   std::vector<BallCap> caps;  // struts that no symmetry has
   for (int i = 0; i < 11; ++i) {
     const double h = 0.9 - 0.16 * i, turn = 1.7 * i * i + i;
     caps.push_back({{std::sqrt(1 - h * h) * std::cos(turn), std::sqrt(1 - h * h) * std::sin(turn), h}, 0});
   }
-  double nearest = std::numbers::pi;
+  double nearest = pi;
   for (std::size_t i = 0; i < caps.size(); ++i)
     for (std::size_t k = 0; k < i; ++k) nearest = std::min(nearest, between(caps[i].axis, caps[k].axis));
   for (BallCap& cap : caps) cap.angle = nearest / 2 - 1e-3;

@@ -105,9 +105,8 @@ std::vector<Vec3> places_to_try(const Polygons& polygons, std::span<const Vec3> 
   return out;
 }
 
-std::optional<Triangulation> mesh_between(const SphereSurface& sphere, const Polygons& polygons, double spacing,
-                                          std::span<const Vec3> holes) {
-  const std::vector<Vec3> spread = spread_points(polygons, std::max(0.01, spacing));
+std::optional<Triangulation> mesh_between(const SphereSurface& sphere, const Polygons& polygons,
+                                          std::span<const Vec3> spread, std::span<const Vec3> holes) {
   for (const Vec3& pole : places_to_try(polygons, holes)) {
     std::vector<PlanePoint> plane = seen_from(pole, polygons.units);
     if (area_within(plane, polygons.loops) <= 0) continue;
@@ -131,18 +130,33 @@ std::optional<Triangulation> mesh_between(const SphereSurface& sphere, const Pol
   return {};
 }
 
-/// How far triangles are off the sphere, where they are farthest off within and not on a side.
-double depth_of(const Triangulation& mesh, const SphereSurface& sphere) {
-  double deepest = 0;
+/// The point of a triangle that is nearest to the origin: within or on a side.
+Vec3 deepest_point(const std::array<Vec3, 3>& p) {
+  const Vec3 normal = cross(p[1] - p[0], p[2] - p[0]);
+  bool is_within = norm(normal) > 0;
+  Vec3 deepest = p[0];
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Vec3 a = p[k], side = p[(k + 1) % 3] - a;
+    is_within = is_within && dot(normal, cross(a, p[(k + 1) % 3])) > 0;
+    const Vec3 q = a + std::clamp(-dot(a, side) / dot(side, side), 0.0, 1.0) * side;
+    if (norm(q) < norm(deepest)) deepest = q;
+  }
+  return is_within ? dot(normal, p[0]) / dot(normal, normal) * normal : deepest;
+}
+
+/// Points of the sphere over the deepest places of triangles that are too deep below it, no two near each other.
+std::vector<Vec3> points_above_deep(const Triangulation& mesh, const SphereSurface& sphere, double deflection,
+                                    double apart) {
+  std::vector<Vec3> out;
   for (const auto& corners : mesh.triangles) {
     std::array<Vec3, 3> p;
     for (std::size_t k = 0; k < 3; ++k) p[k] = mesh.points[corners[k]].point - sphere.frame.origin;
-    const Vec3 normal = cross(p[1] - p[0], p[2] - p[0]);
-    const auto is_left = [&](std::size_t k) { return dot(normal, cross(p[k], p[(k + 1) % 3])) > 0; };
-    if (norm(normal) > 0 && is_left(0) && is_left(1) && is_left(2))
-      deepest = std::max(deepest, sphere.radius - std::fabs(dot(unit(normal), p[0])));
+    const Vec3 deepest = deepest_point(p);
+    if (norm(deepest) == 0 || sphere.radius - norm(deepest) <= deflection * (1 + 1e-6)) continue;
+    const Vec3 n = unit(deepest);
+    if (std::ranges::all_of(out, [&](Vec3 other) { return norm(other - n) > apart; })) out.push_back(n);
   }
-  return deepest;
+  return out;
 }
 
 }  // namespace
@@ -171,13 +185,18 @@ Triangulation strut_mesh(std::span<const RingPoint> lower, std::span<const RingP
 
 std::optional<Triangulation> sphere_mesh(const SphereSurface& sphere, const std::vector<std::vector<Vec3>>& loops,
                                          double deflection, double angle, std::span<const Vec3> holes) {
-  constexpr int most_attempts = 4;
+  constexpr int most_attempts = 12;
   const Polygons polygons = polygons_of(sphere.frame.origin, loops);
-  double spacing = std::min({0.8, angle, std::sqrt(6 * deflection / sphere.radius)});  // of equilateral triangles
+  const double spacing =  // of equilateral triangles
+      std::max(0.01, std::min({0.8, angle, std::sqrt(6 * deflection / sphere.radius)}));
+  std::vector<Vec3> spread = spread_points(polygons, spacing);
   std::optional<Triangulation> mesh;
-  for (int attempt = 0; attempt < most_attempts; ++attempt, spacing *= 0.85) {
-    mesh = mesh_between(sphere, polygons, spacing, holes);
-    if (!mesh || depth_of(*mesh, sphere) <= deflection) break;
+  for (int attempt = 0; attempt < most_attempts; ++attempt) {
+    mesh = mesh_between(sphere, polygons, spread, holes);
+    if (!mesh) break;
+    const std::vector<Vec3> more = points_above_deep(*mesh, sphere, deflection, spacing / 2);
+    if (more.empty()) break;
+    spread.insert(spread.end(), more.begin(), more.end());
   }
   return mesh;
 }
