@@ -17,7 +17,6 @@ static_assert(side == strut_lanes);
 struct Shared {
   Shared(std::shared_ptr<const PlacedCells> placed, const Grid& nodes, const Affine& map, double band)
       : cells(std::move(placed)), grid(nodes), field_from_grid(map), row(strut_row()) {
-    double edge = 0;
     Vec3 brick;
     for (std::size_t a = 0; a < 3; ++a) {
       edge = std::max(edge, grid.spacing(a) * norm(map.linear.column(a)));
@@ -45,6 +44,7 @@ struct Shared {
   StrutRow row;
   std::array<std::int32_t, 3> counts{};
   double margin = 0, radius = 0;
+  double edge = 0;          ///< the longest step of the grid, in the field's space
   double exact_within = 0;  ///< of rows: no more than is asked beside a surface, which is kept in memory
   double far = 0;           ///< what stands where nothing is near
   bool is_exact = false;    ///< values count everywhere, deep inside too
@@ -188,17 +188,24 @@ class Rows final : public ExternalRows {
 
   void values_at(std::span<const Vec3> points, std::span<const double> within, double* out) override {
     const Shared& s = *shared_;
-    for (std::size_t n = 0; n < points.size(); ++n) {
-      const Vec3 p = s.field_from_grid * points[n];
-      Layer& layer = layer_at(brick_of(points[n], 2));
-      const Layer::Brick& brick = layer.brick(s, brick_of(points[n], 0), brick_of(points[n], 1));
-      double least = brick.state == Layer::State::inside ? -s.far : s.far;
-      const Capsule* const capsules = layer.capsules(brick);
-      for (std::uint32_t c = 0; c < brick.capsules; ++c)
-        least = std::min(least, axis_distance(capsules[c], p) - capsules[c].radius);
-      for (const PlacedField& field : layer.fields(brick)) least = std::min(least, field.value(p));
+    for (std::size_t first = 0; first < points.size();) {
+      const std::array<std::int32_t, 3> at = brick_of(points[first]);
+      near_.assign(1, s.field_from_grid * points[first]);
+      std::size_t last = first + 1;
+      double radius = 0;
+      for (; last < points.size() && brick_of(points[last]) == at; ++last) {
+        const Vec3 p = s.field_from_grid * points[last];
+        const double distance = norm(p - near_[0]);
+        if (std::isfinite(s.cells->lipschitz()) && !(distance <= s.edge)) break;
+        radius = std::max(radius, distance);
+        near_.push_back(p);
+      }
+      Layer& layer = layer_at(at[2]);
+      sample_near(layer, layer.brick(s, at[0], at[1]), radius, out + first);
       // What the brick does not know is at least the margin away.
-      out[n] = std::abs(least) > s.margin && !(within[n] <= s.margin) ? s.cells->value(p) : least;
+      for (std::size_t n = first; n < last; ++n)
+        if (std::abs(out[n]) > s.margin && !(within[n] <= s.margin)) out[n] = s.cells->value(near_[n - first]);
+      first = last;
     }
   }
 
@@ -209,9 +216,41 @@ class Rows final : public ExternalRows {
     if (layer.z() != z) layer.enter(z, std::size_t(shared_->counts[0]) * std::size_t(shared_->counts[1]));
     return layer;
   }
-  [[nodiscard]] std::int32_t brick_of(Vec3 p, std::size_t axis) const {
-    const double node = (p[axis] - shared_->grid.box.min[axis]) * shared_->inverse_spacing[axis] + 0.5;
-    return std::clamp(static_cast<std::int32_t>(node), 0, shared_->grid.nodes[axis] - 1) / side;
+  [[nodiscard]] std::array<std::int32_t, 3> brick_of(Vec3 p) const {
+    std::array<std::int32_t, 3> at{};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const double node = (p[axis] - shared_->grid.box.min[axis]) * shared_->inverse_spacing[axis] + 0.5;
+      at[axis] = std::clamp(static_cast<std::int32_t>(node), 0, shared_->grid.nodes[axis] - 1) / side;
+    }
+    return at;
+  }
+
+  /// Of `near_`, all of them within `radius` of the first. Where slopes are bounded, what fields are at the first tells
+  /// which of them can be the least of all at the others. Those are asked for all points at once.
+  void sample_near(const Layer& layer, const Layer::Brick& brick, double radius, double* out) {
+    std::fill_n(out, near_.size(), brick.state == Layer::State::inside ? -shared_->far : shared_->far);
+    const Capsule* const capsules = layer.capsules(brick);
+    for (std::uint32_t c = 0; c < brick.capsules; ++c)
+      for (std::size_t n = 0; n < near_.size(); ++n)
+        out[n] = std::min(out[n], axis_distance(capsules[c], near_[n]) - capsules[c].radius);
+    const std::span<const PlacedField> fields = layer.fields(brick);
+    const bool can_tell = near_.size() > 1 && std::isfinite(shared_->cells->lipschitz());
+    double most = HUGE_VAL;
+    lows_.assign(fields.size(), -HUGE_VAL);
+    for (std::size_t f = 0; can_tell && f < fields.size(); ++f) {
+      const double value = fields[f].value(near_[0]), change = fields[f].lipschitz * radius;
+      const double slack = 1e-9 * (std::abs(value) + change);  // rounding must leave none out
+      lows_[f] = value - change - slack;
+      most = std::min(most, value + change + slack);
+    }
+    local_.resize(near_.size());
+    values_.resize(near_.size());
+    for (std::size_t f = 0; f < fields.size(); ++f) {
+      if (lows_[f] > most) continue;
+      for (std::size_t n = 0; n < near_.size(); ++n) local_[n] = fields[f].local_from_world * near_[n];
+      fields[f].field->values(local_, values_);
+      for (std::size_t n = 0; n < near_.size(); ++n) out[n] = std::min(out[n], fields[f].factor * values_[n]);
+    }
   }
 
   void sample(const Layer& layer, const Layer::Brick& brick, const Line& line, const double* x, double* out) {
@@ -229,6 +268,8 @@ class Rows final : public ExternalRows {
 
   std::shared_ptr<const Shared> shared_;
   std::array<Layer, 4> layers_;
+  std::vector<Vec3> near_, local_;  // points that are asked together
+  std::vector<double> lows_, values_;
 };
 
 class PreparedBricks final : public ExternalField::Prepared {

@@ -7,6 +7,7 @@
 #include <cassert>
 #include <unordered_map>
 
+#include "meso/expr/operations.hpp"
 #include "meso/implicit/interval_arithmetic.hpp"
 #include "scalar_operation.hpp"
 
@@ -32,6 +33,43 @@ Box3 image(const Affine& map, const Box3& box) {
     result.max[row] = sum.hi;
   }
   return result;
+}
+
+template <Op op>
+bool apply_all(const double* a, const double* b, std::size_t count, double* out) {
+  for (std::size_t i = 0; i < count; ++i) {
+    if constexpr (op == Op::negate || op == Op::abs || op == Op::sqrt)
+      out[i] = expr::apply<op>(a[i]);
+    else
+      out[i] = expr::apply<op>(a[i], b[i]);
+  }
+  return true;
+}
+
+/// The operations that bodies are mostly made of, chosen once for all points; whether it is one of them.
+bool apply_often(Op op, const double* a, const double* b, std::size_t count, double* out) {
+  switch (op) {
+    case Op::negate:
+      return apply_all<Op::negate>(a, b, count, out);
+    case Op::abs:
+      return apply_all<Op::abs>(a, b, count, out);
+    case Op::sqrt:
+      return apply_all<Op::sqrt>(a, b, count, out);
+    case Op::add:
+      return apply_all<Op::add>(a, b, count, out);
+    case Op::subtract:
+      return apply_all<Op::subtract>(a, b, count, out);
+    case Op::multiply:
+      return apply_all<Op::multiply>(a, b, count, out);
+    case Op::divide:
+      return apply_all<Op::divide>(a, b, count, out);
+    case Op::min:
+      return apply_all<Op::min>(a, b, count, out);
+    case Op::max:
+      return apply_all<Op::max>(a, b, count, out);
+    default:
+      return false;
+  }
 }
 
 }  // namespace
@@ -121,9 +159,11 @@ void FlatTerm::values(std::span<const Vec3> points, std::span<double> out) const
                        : points[first + i][node.axis];
       } else {
         const std::span<const std::uint32_t> indices = operands(step);
+        const auto operand = [&](std::size_t k) { return &table[indices[k] * batch]; };
+        if (apply_often(step.op, operand(0), operand(indices.size() - 1), count, row)) continue;
         std::array<double, 8> v{};
         for (std::size_t i = 0; i < count; ++i) {
-          for (std::size_t k = 0; k < indices.size(); ++k) v[k] = table[indices[k] * batch + i];
+          for (std::size_t k = 0; k < indices.size(); ++k) v[k] = operand(k)[i];
           row[i] = apply_operation(step.op, {v.data(), indices.size()});
         }
       }
