@@ -120,6 +120,34 @@ TEST(PlacedCells, SamplesOfAGrid) {
   }
 }
 
+/// Points that stand together are asked together: each gets what it gets alone, whether slopes are bounded or not.
+TEST(PlacedCells, NeighboursAreAnsweredAsIfAlone) {
+  for (const bool bounded : {true, false}) {
+    Numbers number;
+    auto all = some_primitives(number, 200, 2);
+    const Term x = Term::coordinate(0), y = Term::coordinate(1);
+    Term angle = Term::apply(expr::Op::atan2, {y, x + 5});
+    if (!bounded) add_field(intersection_of(Field::box(), Field::from_term(angle)), all);
+    const auto cells = std::make_shared<const PlacedCells>(PrimitiveIndex(all, {}), 0.9);
+    ASSERT_EQ(std::isfinite(cells->lipschitz()), bounded);
+    const Grid grid{.box = {{-3, -3, -3}, {3, 3, 3}}, .nodes = {31, 31, 31}};
+    const auto rows = cells->prepare(grid, {}, 0.1, {})->make_rows();
+    std::vector<Vec3> points;
+    for (int place = 0; place < 300; ++place) {
+      const Vec3 middle = number.point(2.8);
+      for (int n = 0; n < 12; ++n) points.push_back(middle + number.point(0.12));
+    }
+    std::vector<double> within(points.size(), HUGE_VAL), together(points.size());
+    rows->values_at(points, within, together.data());
+    for (std::size_t n = 0; n < points.size(); ++n) {
+      double alone = 0;
+      rows->values_at({&points[n], 1}, {&within[n], 1}, &alone);
+      ASSERT_EQ(together[n], alone) << n;
+      ASSERT_NEAR(alone, by_all(all, points[n], 0.9), 1e-12) << n;
+    }
+  }
+}
+
 TEST(PlacedCells, InstructionSetsGiveEqualBits) {
   Numbers number;
   std::vector<Capsule> capsules;
