@@ -2,6 +2,7 @@
 #include "realise_boundary.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "boolean.hpp"
 
@@ -46,14 +47,14 @@ Place Boundary::place(const CellSolids& cells, const CellSolid& cell) const {
     if (const FacetTree* facets = cells.prototypes[cell.prototype].facets())
       return place_facets(*facets, cells.anchors_of(cell), cell.placement);
   const CoarseMesh mesh = cells.mesh_of(cell);
-  if (mesh.points.empty()) return Place::outside;
+  if (mesh.points.empty() && std::isfinite(mesh.error)) return Place::outside;
   std::optional<Solids> body;
   for (const CarrierSurface& surface : surfaces_) {
     if (!surface.box().intersects(box)) continue;
     // A face that the cell's body may enclose has the cell's surface on one side.
     if (!contains(box, surface.box()) && proven_side(surface, mesh, clear_distance) != 0) continue;
     if (!body) {
-      if (reaches_both_sides(mesh)) return Place::crossing;
+      if (!mesh.points.empty() && reaches_both_sides(mesh)) return Place::crossing;
       body = cells.solids_of(cell);
     }
     for (const TopoDS_Shape& solid : *body)

@@ -2,6 +2,7 @@
 #include "realise_cells.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 
 #include "boolean.hpp"
@@ -169,6 +170,10 @@ class Collector {
       return;
     }
     const CoarseMesh& mesh = prototype.mesh();
+    if (std::isinf(mesh.error)) {
+      prototype.radius = norm(prototype.box.max - prototype.centre);
+      return;
+    }
     Box3 points;
     for (const Vec3 p : mesh.points) points.extend(p);
     for (std::size_t i = 0; i < 3; ++i) {

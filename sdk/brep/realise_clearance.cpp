@@ -3,6 +3,7 @@
 
 #include <BRepExtrema_DistShapeShape.hxx>
 #include <algorithm>
+#include <limits>
 #include <numbers>
 
 #include "face_moments.hpp"
@@ -219,7 +220,7 @@ CoarseMesh coarse_mesh(const Solids& solids, double fineness) {
       done = add_triangles(copy, with);
       if (done) mesh = std::move(with);
     }
-    if (!done) throw Standard_Failure("a face cannot be triangulated");
+    if (!done) return {.error = std::numeric_limits<double>::infinity()};
   }
   return mesh;
 }
