@@ -10,8 +10,10 @@
 #include <istream>
 
 #include "boolean.hpp"
+#include "import_crossing.hpp"
 #include "import_kernel.hpp"
 #include "import_stl.hpp"
+#include "meso/base/number.hpp"
 #include "meso/brep/read_step.hpp"
 #include "meso/brep/step_text.hpp"
 #include "meso/resource/resource.hpp"
@@ -105,6 +107,19 @@ std::optional<std::string> fault_of(const Solids& solids) {
   return {};
 }
 
+bool crosses(const Solids& solids, const eval::ImportShape& import, ElementId where, const SolidContext& context) {
+  for (const TopoDS_Shape& solid : solids) {
+    const auto place = self_crossing(solid);
+    if (!place) continue;
+    context.report(
+        Code::import_overlaps, where,
+        {import.file.name().string(), "the surface of a solid passes through itself near " + format_number(place->x) +
+                                          " " + format_number(place->y) + " " + format_number(place->z) + " mm"});
+    return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 bool is_exact_file(const path& file) {
@@ -113,7 +128,7 @@ bool is_exact_file(const path& file) {
 }
 
 std::optional<Solids> import_solids(const eval::ImportShape& import, const Affine& map, ElementId where,
-                                    const SolidContext& context) {
+                                    const SolidContext& context, Crossing crossing) {
   if (!hash_holds(import, where, context)) return {};
   std::optional<Solids> read = read_solids(import.file, where, context);
   if (!read) return {};
@@ -121,6 +136,9 @@ std::optional<Solids> import_solids(const eval::ImportShape& import, const Affin
     context.report(Code::import_not_closed, where, {import.file.name().string(), *fault});
     return {};
   }
+  if (crossing == Crossing::refused && kind_of(import.file.name()) != FileKind::stl &&
+      crosses(*read, import, where, context))
+    return {};
   // Solids of one body may overlap; what follows counts on solids that do not.
   read = fuse(*read, where, context);
   if (!read) return {};

@@ -14,7 +14,10 @@
 
 namespace meso::brep {
 
+/// Files for audits and pictures may cross themselves; in a part they may not (IMPORT_OVERLAPS).
+enum class Crossing { refused, read };
+
 [[nodiscard]] std::optional<Solids> import_solids(const eval::ImportShape& import, const Affine& map, ElementId where,
-                                                  const SolidContext& context);
+                                                  const SolidContext& context, Crossing crossing = Crossing::refused);
 
 }  // namespace meso::brep

@@ -3,11 +3,14 @@
 
 #include <gtest/gtest.h>
 
+#include <BRepBuilderAPI_MakePolygon.hxx>
 #include <BRepBuilderAPI_Sewing.hxx>
 #include <BRepPrimAPI_MakeCylinder.hxx>
+#include <BRepPrimAPI_MakeTorus.hxx>
 #include <IGESControl_Controller.hxx>
 #include <IGESControl_Writer.hxx>
 #include <Interface_Static.hxx>
+#include <STEPControl_Writer.hxx>
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
@@ -73,7 +76,7 @@ class ImportSolids : public ::testing::Test {
   }
   void expect_refused(const std::filesystem::path& file, Code code) {
     sink_ = DiagnosticSink();
-    EXPECT_FALSE(imported({.file = file}));
+    EXPECT_FALSE(imported({.file = file})) << file;
     ASSERT_FALSE(sink_.diagnostics().empty());
     EXPECT_EQ(sink_.diagnostics().front().code, code) << render(sink_.diagnostics().front());
   }
@@ -326,6 +329,42 @@ TEST_F(ImportSolids, BrepFiles) {
   EXPECT_NEAR(read(hollow(), 1), hollow_volume, 1e-6);
   EXPECT_TRUE(is_exact_file("A.BREP"));
   EXPECT_FALSE(is_exact_file("a.stl"));
+}
+
+/// The tetrahedron whose bottom is drawn out through a side, as faces that share edges.
+TopoDS_Shape spike() {
+  const std::array<gp_Pnt, 5> points{gp_Pnt(0, 0, 0), gp_Pnt(4, 0, 0), gp_Pnt(0, 4, 0), gp_Pnt(1, 1, 3),
+                                     gp_Pnt(6, 6, 1)};
+  BRepBuilderAPI_Sewing sewing;
+  for (const auto& t : {std::array<std::size_t, 3>{0, 2, 4}, {2, 1, 4}, {1, 0, 4}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}})
+    sewing.Add(
+        BRepBuilderAPI_MakeFace(BRepBuilderAPI_MakePolygon(points[t[0]], points[t[1]], points[t[2]], true).Wire(), true)
+            .Face());
+  sewing.Perform();
+  const TopExp_Explorer shell(sewing.SewedShape(), TopAbs_SHELL);
+  return BRepBuilderAPI_MakeSolid(TopoDS::Shell(shell.Current())).Solid();
+}
+
+std::string step_of(const TopoDS_Shape& shape, const std::filesystem::path& file) {
+  STEPControl_Writer writer;
+  writer.Transfer(shape, STEPControl_AsIs);
+  EXPECT_EQ(writer.Write(file.string().c_str()), IFSelect_RetDone);
+  return text_of(file);
+}
+
+TEST_F(ImportSolids, ExactSurfacesThatCrossThemselves) {
+  expect_refused(written("spike.brep", brep_of(spike())), Code::import_overlaps);
+  expect_refused(written("spike.step", step_of(spike(), folder_ / "s.step")), Code::import_overlaps);
+  // A tube wider than the ring it goes around covers the middle twice.
+  expect_refused(written("spindle.brep", brep_of(BRepPrimAPI_MakeTorus(3, 4).Solid())), Code::import_overlaps);
+  // Walls a hundredth of the body's size apart keep clear, round ones too.
+  const TopoDS_Shape pipe =
+      BRepAlgoAPI_Cut(BRepPrimAPI_MakeCylinder(10, 20).Solid(), BRepPrimAPI_MakeCylinder(9.99, 20).Solid()).Shape();
+  EXPECT_TRUE(imported({.file = written("pipe.brep", brep_of(pipe))}));
+  EXPECT_TRUE(imported({.file = written("ring.brep", brep_of(BRepPrimAPI_MakeTorus(4.01, 4).Solid()))}));
+  // Whoever looks at a file may read it all the same.
+  sink_ = DiagnosticSink();
+  EXPECT_TRUE(read_step(written("spike.brep", brep_of(spike())), {}, run_, sink_));
 }
 
 TEST_F(ImportSolids, FilesThatAreNotBrep) {

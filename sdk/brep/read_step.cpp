@@ -10,7 +10,8 @@ namespace meso::brep {
 std::optional<Body> read_step(const Resource& file, const ReadStepOptions& options, const RunOptions& run,
                               DiagnosticSink& sink) {
   const SourceMap source(file.name().string(), {});
-  const auto solids = import_solids({.file = file}, {}, {}, {.source = source, .run = run, .sink = sink});
+  const auto solids = import_solids({.file = file}, {}, {}, {.source = source, .run = run, .sink = sink},
+                                    options.may_cross ? Crossing::read : Crossing::refused);
   if (!solids) return std::nullopt;
   TopoDS_Compound all;
   BRep_Builder builder;

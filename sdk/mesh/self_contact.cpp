@@ -148,13 +148,22 @@ class Grid {
   std::vector<std::uint32_t> entries_;
 };
 
-bool share_a_point(const std::array<std::uint32_t, 3>& a, const std::array<std::uint32_t, 3>& b) {
-  return std::any_of(a.begin(), a.end(), [&](std::uint32_t p) { return std::find(b.begin(), b.end(), p) != b.end(); });
+using Indices = std::array<std::uint32_t, 3>;
+
+std::ptrdiff_t count_shared(const Indices& a, const Indices& b) {
+  return std::ranges::count_if(a, [&](std::uint32_t p) { return std::ranges::count(b, p) > 0; });
+}
+
+/// Of triangles that share one point: does the edge of `s` that is opposite to it pass through `t`?
+bool opposite_edge_meets(const Indices& of_s, const Corners& s, const Indices& of_t, const Corners& t) {
+  for (std::size_t i = 0; i < 3; ++i)
+    if (std::ranges::count(of_t, of_s[i]) > 0) return segment_meets(s[(i + 1) % 3], s[(i + 2) % 3], t);
+  return false;
 }
 
 /// visit(i, j, corner of their common box) for each pair, until it returns false.
 template <class Visit>
-void visit_pairs(const TriangleMesh& mesh, Visit visit) {
+void visit_pairs(const TriangleMesh& mesh, SharedPoint shared, Visit visit) {
   if (mesh.triangles.empty()) return;
   const Grid grid(mesh);
   for (std::size_t b = 0; b < grid.buckets(); ++b) {
@@ -163,14 +172,19 @@ void visit_pairs(const TriangleMesh& mesh, Visit visit) {
       const Corners s = grid.corners(*i);
       const Box3 box = box_of(s);
       for (const std::uint32_t* j = i + 1; j != last; ++j) {
-        if (share_a_point(mesh.triangles[*i], mesh.triangles[*j])) continue;
+        const Indices &of_s = mesh.triangles[*i], &of_t = mesh.triangles[*j];
+        const auto common = count_shared(of_s, of_t);
+        if (common > (shared == SharedPoint::tested ? 1 : 0)) continue;
         const Corners t = grid.corners(*j);
         const Box3 other = box_of(t);
         if (!box.intersects(other)) continue;
         // A pair that meets in several buckets counts in the one that holds the low corner of the common box.
         const Vec3 corner{std::max(box.min.x, other.min.x), std::max(box.min.y, other.min.y),
                           std::max(box.min.z, other.min.z)};
-        if (grid.bucket_of(corner) != b || !triangles_meet(s, t)) continue;
+        if (grid.bucket_of(corner) != b) continue;
+        if (common == 0 ? !triangles_meet(s, t)
+                        : !opposite_edge_meets(of_s, s, of_t, t) && !opposite_edge_meets(of_t, t, of_s, s))
+          continue;
         if (!visit(*i, *j, s, t, corner)) return;
       }
     }
@@ -179,9 +193,10 @@ void visit_pairs(const TriangleMesh& mesh, Visit visit) {
 
 }  // namespace
 
-SelfContacts count_self_contacts(const TriangleMesh& mesh, std::span<const double> heights, std::uint64_t limit) {
+SelfContacts count_self_contacts(const TriangleMesh& mesh, std::span<const double> heights, std::uint64_t limit,
+                                 SharedPoint shared) {
   SelfContacts out;
-  visit_pairs(mesh, [&](std::uint32_t i, std::uint32_t j, const Corners& s, const Corners& t, Vec3 corner) {
+  visit_pairs(mesh, shared, [&](std::uint32_t i, std::uint32_t j, const Corners& s, const Corners& t, Vec3 corner) {
     const double depth = std::min(way_out(s, t), way_out(t, s));
     if (!out.place || depth > out.deepest_mm) {
       out.place = corner;

@@ -10,6 +10,7 @@
 #include "meso/brep/gaps.hpp"
 #include "meso/brep/read_step.hpp"
 #include "meso/brep/step_text.hpp"
+#include "meso/brep/triangle_mesh.hpp"
 #include "meso/import_surface_mesh/read_surface_mesh.hpp"
 #include "meso/mesh/audit_mesh.hpp"
 #include "meso/mesh/self_contact.hpp"
@@ -147,7 +148,7 @@ std::optional<VerifyReport> audit_step(const std::filesystem::path& file, bool d
   expect_small("edges from faces", gaps.edge_mm);
   expect_small("vertices from edges", gaps.vertex_mm);
   report.shell_volumes = shell_volumes(*body);
-  const TriangleMesh mesh = triangle_mesh(*body);
+  const TriangleMesh mesh = brep::triangle_mesh(*body);
   if (!mesh.triangles.empty())
     check_self_contact(report, mesh, std::vector<double>(mesh.triangles.size(), gaps.triangle_mm));
   else

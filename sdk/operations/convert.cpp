@@ -192,12 +192,4 @@ std::optional<ConvertReport> convert(const fs::path& in, const fs::path& out, Ma
                                                          : convert_to_mesh(in, out, options, write, sink);
 }
 
-TriangleMesh triangle_mesh(const brep::Body& body) {
-  Weld weld;
-  brep::visit_triangles(body, [&](std::span<const Triangle> block) {
-    for (const Triangle& t : block) weld.add(t[0], t[1], t[2]);
-  });
-  return std::move(weld).mesh();
-}
-
 }  // namespace meso::operations

@@ -7,6 +7,7 @@
 #include "file_extension.hpp"
 #include "meso/brep/measure.hpp"
 #include "meso/brep/read_step.hpp"
+#include "meso/brep/triangle_mesh.hpp"
 #include "meso/import_surface_mesh/read_surface_mesh.hpp"
 #include "meso/membership/crossings.hpp"
 #include "meso/operations/convert.hpp"
@@ -49,7 +50,7 @@ std::optional<TriangleMesh> ImportedBodies::triangles(const eval::ImportShape& i
     error_mm_ = std::max(error_mm_, scale * error);
     error_mm3_ += scale * scale * scale * error * m.area;
   }
-  return triangle_mesh(*body);
+  return brep::triangle_mesh(*body);
 }
 
 }  // namespace meso::operations

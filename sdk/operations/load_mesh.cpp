@@ -6,6 +6,7 @@
 
 #include "file_extension.hpp"
 #include "meso/brep/read_step.hpp"
+#include "meso/brep/triangle_mesh.hpp"
 #include "meso/import_surface_mesh/read_surface_mesh.hpp"
 #include "read_mesh.hpp"
 
@@ -22,11 +23,11 @@ std::optional<TriangleMesh> load_mesh(const std::filesystem::path& file, MakeOpt
     const auto body = brep::read_step(
         file, {.deflection_mm = options.deflection_mm.value_or(0.1), .angle_rad = options.angle_rad.value_or(0.3)},
         options.run, sink);
-    return body ? std::optional(triangle_mesh(*body)) : std::nullopt;
+    return body ? std::optional(brep::triangle_mesh(*body)) : std::nullopt;
   }
   options.mesh = true;
   const auto made = make_body(file, options, sink);
-  return made ? std::optional(triangle_mesh(made->realisation.body)) : std::nullopt;
+  return made ? std::optional(brep::triangle_mesh(made->realisation.body)) : std::nullopt;
 }
 
 }  // namespace meso::operations

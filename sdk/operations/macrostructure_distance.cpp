@@ -2,6 +2,7 @@
 #include "meso/operations/macrostructure_distance.hpp"
 
 #include "meso/brep/realise.hpp"
+#include "meso/brep/triangle_mesh.hpp"
 #include "meso/operations/convert.hpp"
 #ifdef MESO_WITH_MESH_DISTANCE
 #include "meso/mesh_distance/mesh_field.hpp"
@@ -56,13 +57,13 @@ eval::FindMacrostructureDistance macrostructure_distance(std::vector<eval::Overr
     brep::RealiseOptions options{.mesh = true, .deflection_mm = 1, .angle_rad = 0.5, .run = run};
     const auto coarse = brep::realise_macrostructure(*evaluation, macrostructure, options, sink);
     if (!coarse) return nullptr;
-    const Box3 box = box_of(triangle_mesh(*coarse));
+    const Box3 box = box_of(brep::triangle_mesh(*coarse));
     const double size = norm(box.max - box.min);
     options.deflection_mm = relative_deflection * size;
     options.angle_rad = 0.1;
     const auto body = brep::realise_macrostructure(*evaluation, macrostructure, options, sink);
     if (!body) return nullptr;
-    auto field = implicit::MeshField::make(triangle_mesh(*body), macrostructure.id.text, run, sink);
+    auto field = implicit::MeshField::make(brep::triangle_mesh(*body), macrostructure.id.text, run, sink);
     return field ? std::make_shared<MeshWall>(std::move(field), size) : nullptr;
   };
 }

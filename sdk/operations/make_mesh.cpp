@@ -12,6 +12,7 @@
 #include "meso/base/memory_mesh_sink.hpp"
 #include "meso/base/number.hpp"
 #include "meso/brep/read_step.hpp"
+#include "meso/brep/triangle_mesh.hpp"
 #include "meso/export_mesh/mesh_writer.hpp"
 #include "meso/implicit/accurate_mesh.hpp"
 #include "meso/implicit/compile.hpp"
@@ -34,9 +35,10 @@ constexpr double import_deflection = 1e-4, import_angle = 0.1;
 
 std::optional<TriangleMesh> import_mesh(const eval::ImportShape& import, const RunOptions& run, DiagnosticSink& sink) {
   if (brep::is_exact_file(import.file.name())) {
-    const auto body =
-        brep::read_step(import.file, {.relative_deflection = import_deflection, .angle_rad = import_angle}, run, sink);
-    return body ? std::optional(triangle_mesh(*body)) : std::nullopt;
+    const auto body = brep::read_step(
+        import.file, {.relative_deflection = import_deflection, .angle_rad = import_angle, .may_cross = false}, run,
+        sink);
+    return body ? std::optional(brep::triangle_mesh(*body)) : std::nullopt;
   }
   return read_surface_mesh_file(import.file, sink, run);
 }

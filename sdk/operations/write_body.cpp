@@ -7,6 +7,7 @@
 #include "meso/base/number.hpp"
 #include "meso/base/output_file.hpp"
 #include "meso/brep/read_step.hpp"
+#include "meso/brep/triangle_mesh.hpp"
 #include "meso/brep/triangles.hpp"
 #include "meso/brep/write_brep.hpp"
 #include "meso/export_mesh/mesh_writer.hpp"
@@ -62,7 +63,7 @@ std::optional<Written> write_format(Format format, const brep::Body& body, const
 
 /// Formats whose triangles share points.
 std::optional<Written> write_shared_mesh(const brep::Body& body, const std::filesystem::path& file, OutputFile& out) {
-  const TriangleMesh mesh = triangle_mesh(body);
+  const TriangleMesh mesh = brep::triangle_mesh(body);
   const auto writer = make_mesh_writer(*mesh_format_of(file.string()), out);
   if (!write_mesh(mesh, *writer)) return std::nullopt;
   return Written{.triangles = mesh.triangles.size()};

@@ -23,6 +23,7 @@ struct ReadStepOptions {
   std::optional<double> relative_deflection{};  ///< the same as a fraction of the diagonal of the solids' box
   double angle_rad = 0.5;
   bool mesh_may_fail = false;  ///< then a body without triangles will do
+  bool may_cross = true;       ///< else a surface that passes through itself is IMPORT_OVERLAPS
 };
 
 /// By its extension: .step .stp .iges .igs .brep, in any case.

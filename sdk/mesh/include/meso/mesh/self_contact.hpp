@@ -32,9 +32,14 @@ struct SelfContacts {
   std::optional<Vec3> place;  ///< a corner of the common box of the deepest pair
 };
 
+/// Whether pairs that share one point of the mesh are looked at, too: they cross where the edge opposite to it passes
+/// through the other. Rounding turns slivers over about their points, so this is for meshes with heights.
+enum class SharedPoint { skipped, tested };
+
 /// `heights`: how far each triangle may be off its surface; none: not at all.
 [[nodiscard]] SelfContacts count_self_contacts(const TriangleMesh& mesh, std::span<const double> heights = {},
-                                               std::uint64_t limit = std::numeric_limits<std::uint64_t>::max());
+                                               std::uint64_t limit = std::numeric_limits<std::uint64_t>::max(),
+                                               SharedPoint shared = SharedPoint::skipped);
 
 /// How far each triangle is off a smooth surface through its corners, as the turn from its neighbours tells. Turns of
 /// more than a radian are edges of the body.

@@ -108,7 +108,4 @@ struct ConvertReport {
                                                    MakeOptions options, const WriteOptions& write,
                                                    DiagnosticSink& sink);
 
-/// All triangles of a meshed body, points shared.
-[[nodiscard]] TriangleMesh triangle_mesh(const brep::Body& body);
-
 }  // namespace meso::operations
