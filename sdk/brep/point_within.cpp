@@ -2,6 +2,7 @@
 #include "point_within.hpp"
 
 #include <BOPTools_AlgoTools3D.hxx>
+#include <BRepTopAdaptor_FClass2d.hxx>
 #include <IntTools_Context.hxx>
 #include <algorithm>
 #include <optional>
@@ -63,6 +64,26 @@ std::vector<Vec3> points_along_edges(const TopoDS_Shape& shape, std::size_t each
     const double first = curve.FirstParameter(), length = curve.LastParameter() - first;
     for (std::size_t k = 1; k <= each; ++k)
       points.push_back(to_vec(curve.Value(first + length * static_cast<double>(k) / static_cast<double>(each + 1))));
+  }
+  return points;
+}
+
+std::vector<Vec3> points_on_faces(const TopoDS_Shape& shape, std::size_t each) {
+  std::vector<Vec3> points;
+  const auto middle = [&](double low, double high, std::size_t k) {
+    return low + (high - low) * (static_cast<double>(k) + 0.5) / static_cast<double>(each);
+  };
+  for (TopExp_Explorer it(shape, TopAbs_FACE); it.More(); it.Next()) {
+    const TopoDS_Face& face = TopoDS::Face(it.Current());
+    const BRepAdaptor_Surface surface(face, false);
+    BRepTopAdaptor_FClass2d classifier(face, Precision::PConfusion());
+    double u0 = 0, u1 = 0, v0 = 0, v1 = 0;
+    BRepTools::UVBounds(face, u0, u1, v0, v1);
+    for (std::size_t i = 0; i < each; ++i)
+      for (std::size_t j = 0; j < each; ++j) {
+        const gp_Pnt2d at(middle(u0, u1, i), middle(v0, v1, j));
+        if (classifier.Perform(at) == TopAbs_IN) points.push_back(to_vec(surface.Value(at.X(), at.Y())));
+      }
   }
   return points;
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Points by which pieces are judged: well within a solid (a face's middle, moved inwards), and along its edges.
+// Points by which pieces are judged: well within a solid (a face's middle, moved inwards), along its edges and on
+// its faces.
 // Private.
 
 #include <vector>
@@ -16,5 +17,8 @@ namespace meso::brep {
 /// `each` points between the ends of every edge. A face that was not divided where it should have been has edges on the
 /// wrong side of what should have divided it.
 [[nodiscard]] std::vector<Vec3> points_along_edges(const TopoDS_Shape& shape, std::size_t each);
+
+/// Of a grid of `each` x `each` parameters over every face, those that lie in it.
+[[nodiscard]] std::vector<Vec3> points_on_faces(const TopoDS_Shape& shape, std::size_t each);
 
 }  // namespace meso::brep

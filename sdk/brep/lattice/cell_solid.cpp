@@ -13,6 +13,7 @@ namespace meso::brep {
 namespace {
 
 constexpr std::size_t points_an_edge = 5;
+constexpr std::size_t points_a_face = 8;  ///< squared
 
 bool on_wall(double value, double low, double high, double tolerance) {
   return std::fabs(value - low) < tolerance || std::fabs(value - high) < tolerance;
@@ -118,12 +119,18 @@ std::optional<TopoDS_Shape> cut_to_box(const TopoDS_Shape& whole, const CellShap
   const double before = volume_of(whole), inside = volume_of(common.Shape()), outside = volume_of(cut.Shape());
   if (contradicts(inside + outside, before, before, 1e-6)) return {};
   // Where a wall runs through a ball's centre but for 1e-7 of the cell, nothing is divided and all sums hold.
-  const auto is_in_box = [&](Vec3 p) {
-    for (std::size_t i = 0; i < 3; ++i)
-      if (p[i] < cell.box.min[i] + cell.tolerance() || p[i] > cell.box.max[i] - cell.tolerance()) return false;
-    return true;
+  const auto reaches = [&](const TopoDS_Shape& piece, auto within) {
+    return std::ranges::any_of(points_along_edges(piece, points_an_edge), within) ||
+           std::ranges::any_of(points_on_faces(piece, points_a_face), within);
   };
-  if (std::ranges::any_of(points_along_edges(cut.Shape(), points_an_edge), is_in_box)) return {};
+  const auto depth = [&](Vec3 p) {
+    double least = HUGE_VAL;
+    for (std::size_t i = 0; i < 3; ++i) least = std::min({least, p[i] - cell.box.min[i], cell.box.max[i] - p[i]});
+    return least;
+  };
+  if (reaches(cut.Shape(), [&](Vec3 p) { return depth(p) > cell.tolerance(); }) ||
+      reaches(common.Shape(), [&](Vec3 p) { return depth(p) < -cell.tolerance(); }))
+    return {};
   TopoDS_Shape clipped = common.Shape();
   BRepTools::RemoveInternals(clipped);  // points where a ball touches a wall bound nothing
   return clipped;
