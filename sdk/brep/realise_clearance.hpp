@@ -44,8 +44,8 @@ class CarrierSurface {
   std::optional<Mat3> ball_from_ellipsoid_;  ///< linear part; `minor_` is then the shortest half axis
 };
 
-/// Triangles near a body's surface: no point of it is farther than `error` from them. None, and an infinite error, where
-/// OpenCASCADE finds none: nothing is proven then.
+/// Triangles near a body's surface: no point of it is farther than `error` from them. None, and an infinite error,
+/// where OpenCASCADE finds none: nothing is proven then.
 struct CoarseMesh {
   std::vector<Vec3> points;
   std::vector<std::array<std::uint32_t, 3>> triangles;
