@@ -26,6 +26,7 @@ constexpr double edge_tolerance_mm = 1e-4;
 constexpr std::size_t slab_tools = 128;
 constexpr std::size_t points_each = 16;  ///< of a piece, looked at one by one
 constexpr std::size_t points_an_edge = 5;
+constexpr std::size_t points_a_face = 3;  ///< along each parameter
 
 std::vector<Bnd_Box> boxes_of(const Solids& solids) {
   std::vector<Bnd_Box> boxes(solids.size());
@@ -134,25 +135,27 @@ class Pieces {
         if (contradictions >= 2) return true;  // a single classification can fail by chance
       }
     }
-    return reaches_into(boxes, classifiers);
+    return reaches_into(TopAbs_EDGE, boxes, classifiers) || reaches_into(TopAbs_FACE, boxes, classifiers);
   }
 
-  /// Whether an edge is within an argument that none of its pieces comes from: a piece has it that should have been
-  /// divided, and few of its faces' middles may tell. Edges may lie on an argument, known as they are.
-  [[nodiscard]] bool reaches_into(const std::vector<Bnd_Box>& boxes,
+  /// Whether an edge or a face is within an argument that none of its pieces comes from: a piece has it that should
+  /// have been divided, and few of its faces' middles may tell. They may lie on an argument, known as they are.
+  [[nodiscard]] bool reaches_into(TopAbs_ShapeEnum kind, const std::vector<Bnd_Box>& boxes,
                                   std::deque<BRepClass3d_SolidClassifier>& classifiers) const {
-    TopTools_IndexedMapOfShape edges;
-    std::vector<std::vector<std::size_t>> owners;  // per edge: the arguments of all its pieces
+    TopTools_IndexedMapOfShape parts;
+    std::vector<std::vector<std::size_t>> owners;  // per part: the arguments of all its pieces
     for (std::size_t i = 0; i < owners_.size(); ++i)
-      for (TopExp_Explorer it(pieces_(static_cast<int>(i) + 1), TopAbs_EDGE); it.More(); it.Next()) {
-        const auto e = static_cast<std::size_t>(edges.Add(it.Current()));
-        if (e > owners.size()) owners.emplace_back();
-        owners[e - 1].insert(owners[e - 1].end(), owners_[i].arguments.begin(), owners_[i].arguments.end());
+      for (TopExp_Explorer it(pieces_(static_cast<int>(i) + 1), kind); it.More(); it.Next()) {
+        const auto part = static_cast<std::size_t>(parts.Add(it.Current()));
+        if (part > owners.size()) owners.emplace_back();
+        owners[part - 1].insert(owners[part - 1].end(), owners_[i].arguments.begin(), owners_[i].arguments.end());
       }
-    for (std::size_t e = 0; e < owners.size(); ++e) {
-      const std::vector<Vec3> points = points_along_edges(edges(static_cast<int>(e) + 1), points_an_edge);
+    for (std::size_t i = 0; i < owners.size(); ++i) {
+      const TopoDS_Shape& part = parts(static_cast<int>(i) + 1);
+      const std::vector<Vec3> points =
+          kind == TopAbs_EDGE ? points_along_edges(part, points_an_edge) : points_on_faces(part, points_a_face);
       for (std::size_t a = 0; a < boxes.size(); ++a) {
-        if (std::ranges::count(owners[e], a) > 0) continue;
+        if (std::ranges::count(owners[i], a) > 0) continue;
         const auto within = std::ranges::count_if(points, [&](Vec3 p) {
           if (boxes[a].IsOut(to_pnt(p))) return false;
           classifiers[a].Perform(to_pnt(p), 2 * edge_tolerance_mm);
