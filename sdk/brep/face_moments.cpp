@@ -8,70 +8,13 @@
 #include <GeomAdaptor_Curve.hxx>
 #include <algorithm>
 #include <numbers>
+#include <optional>
 
 #include "ellipsoid.hpp"
+#include "u_integral.hpp"
 
 namespace meso::brep {
 namespace {
-
-// Gauss-Legendre on [-1, 1], 10 points: exact for polynomials to degree 19, and for the trigonometric polynomials of
-// quadrics to 1e-15 over a quarter turn.
-constexpr std::array<double, 5> nodes{0.1488743389816312, 0.4333953941292472, 0.6794095682990244, 0.8650633666889845,
-                                      0.9739065285171717};
-constexpr std::array<double, 5> weights{0.2955242247147529, 0.2692667193099963, 0.2190863625159820, 0.1494513491505806,
-                                        0.0666713443086881};
-
-template <typename Function>
-void gauss(double a, double b, Function f) {
-  const double half = (b - a) / 2, middle = (a + b) / 2;
-  for (std::size_t i = 0; i < nodes.size(); ++i) {
-    f(middle - half * nodes[i], half * weights[i]);
-    f(middle + half * nodes[i], half * weights[i]);
-  }
-}
-
-constexpr std::size_t component_count = 10;  // area, then volume, vector area and centroid moments by axis
-using Components = std::array<double, component_count>;
-
-Components integrand(const GeomAdaptor_Surface& surface, double u, double v) {
-  gp_Pnt p;
-  gp_Vec du, dv;
-  surface.D1(u, v, p, du, dv);
-  const gp_Vec n = du.Crossed(dv);
-  return {n.Magnitude(),
-          p.X() * n.X(),
-          p.Y() * n.Y(),
-          p.Z() * n.Z(),
-          n.X(),
-          n.Y(),
-          n.Z(),
-          p.X() * p.X() / 2 * n.X(),
-          p.Y() * p.Y() / 2 * n.Y(),
-          p.Z() * p.Z() / 2 * n.Z()};
-}
-
-void add(Components& sum, double factor, const Components& term) {
-  for (std::size_t i = 0; i < component_count; ++i) sum[i] += factor * term[i];
-}
-
-// Where the surface stops being smooth in u: its knots, and quarter turns of the periodic ones.
-std::vector<double> u_breaks(const GeomAdaptor_Surface& surface, double u_min, double u_max) {
-  std::vector<double> breaks{u_min};
-  const auto intervals = surface.NbUIntervals(GeomAbs_CN);
-  TColStd_Array1OfReal knots(1, intervals + 1);
-  surface.UIntervals(knots, GeomAbs_CN);
-  for (const double knot : knots)
-    if (knot > u_min && knot < u_max) breaks.push_back(knot);
-  breaks.push_back(u_max);
-  if (surface.GetType() == GeomAbs_BSplineSurface || surface.GetType() == GeomAbs_Plane) return breaks;
-  std::vector<double> fine;
-  for (std::size_t i = 0; i + 1 < breaks.size(); ++i) {
-    const int pieces = std::max(1, static_cast<int>(std::ceil((breaks[i + 1] - breaks[i]) / (std::numbers::pi / 2))));
-    for (int k = 0; k < pieces; ++k) fine.push_back(breaks[i] + (breaks[i + 1] - breaks[i]) * k / pieces);
-  }
-  fine.push_back(u_max);
-  return fine;
-}
 
 /// Where an edge runs in the parameters of a face. Of planes, quadrics and tori it is the curve in space that tells,
 /// the pcurve only which turn around the axis is meant: pcurves that OpenCASCADE's reader has made are approximations,
@@ -169,14 +112,14 @@ class BoundaryIntegral {
   explicit BoundaryIntegral(const TopoDS_Face& face) : surface_(BRep_Tool::Surface(face)) {
     double u_min = 0, u_max = 0, v_min = 0, v_max = 0;
     BRepTools::UVBounds(face, u_min, u_max, v_min, v_max);
-    breaks_ = u_breaks(surface_, u_min, u_max);
+    along_u_.emplace(surface_, u_min, u_max);
     for (const double u : {u_min, (u_min + u_max) / 2, u_max})
       for (const double v : {v_min, v_max}) reach_ = std::max(reach_, surface_.Value(u, v).XYZ().Modulus());
-    patch_ = std::abs(v_max - v_min) * integrate_u(u_max, (v_min + v_max) / 2)[0];
+    patch_ = std::abs(v_max - v_min) * (*along_u_)(u_max, (v_min + v_max) / 2)[0];
     for (TopExp_Explorer it(face.Oriented(TopAbs_FORWARD), TopAbs_EDGE); it.More(); it.Next())
       add_edge(TopoDS::Edge(it.Current()), face);
   }
-  [[nodiscard]] const Components& total() const { return total_; }
+  [[nodiscard]] const Moments& total() const { return total_; }
 
  private:
   void add_edge(const TopoDS_Edge& edge, const TopoDS_Face& face) {
@@ -194,11 +137,11 @@ class BoundaryIntegral {
 
   // Halving until the halves agree with the whole, in units of the area within the bounds and the distance from the
   // origin: many of the sums cancel to nothing, so their own size is no measure.
-  void refine(const EdgeOnSurface& curve, double a, double b, const Components& whole, double sign, int depth) {
+  void refine(const EdgeOnSurface& curve, double a, double b, const Moments& whole, double sign, int depth) {
     const double middle = (a + b) / 2;
-    const Components left = integrate(curve, a, middle), right = integrate(curve, middle, b);
+    const Moments left = integrate(curve, a, middle), right = integrate(curve, middle, b);
     bool agrees = true;
-    for (std::size_t i = 0; i < component_count; ++i)
+    for (std::size_t i = 0; i < moment_count; ++i)
       agrees = agrees && std::abs(left[i] + right[i] - whole[i]) <= 1e-12 * patch_ * unit_of(i);
     if (agrees || depth == 8) {
       add(total_, sign, left);
@@ -214,33 +157,20 @@ class BoundaryIntegral {
     return is_volume ? reach_ : is_centroid ? reach_ * reach_ : 1;
   }
 
-  [[nodiscard]] Components integrate(const EdgeOnSurface& curve, double a, double b) const {
-    Components sum{};
+  [[nodiscard]] Moments integrate(const EdgeOnSurface& curve, double a, double b) const {
+    Moments sum{};
     gauss(a, b, [&](double t, double weight) {
       const EdgeOnSurface::Point at = curve(t);
-      if (at.dv != 0) add(sum, weight * at.dv, integrate_u(at.u, at.v));  // zero: along u
+      if (at.dv != 0) add(sum, weight * at.dv, (*along_u_)(at.u, at.v));  // zero: along u
     });
     return sum;
   }
 
-  [[nodiscard]] Components integrate_u(double u, double v) const {
-    Components sum{};
-    // Pcurves may overshoot the bounds by a rounding error or, in periodic directions, lie beyond; the last span
-    // extends.
-    for (std::size_t i = 0; i + 1 < breaks_.size(); ++i) {
-      const bool last = i + 2 == breaks_.size();
-      const double a = breaks_[i], b = last ? u : std::min(u, breaks_[i + 1]);
-      if (i > 0 && b <= a) break;
-      gauss(a, b, [&](double s, double weight) { add(sum, weight, integrand(surface_, s, v)); });
-    }
-    return sum;
-  }
-
   GeomAdaptor_Surface surface_;
-  std::vector<double> breaks_;
+  std::optional<UIntegral> along_u_;
   double reach_ = 0;  // of the face from the origin, roughly
   double patch_ = 0;  // area within the bounds, roughly
-  Components total_{};
+  Moments total_{};
 };
 
 void extend(Box3& box, const Bnd_Box& other) {
@@ -274,7 +204,7 @@ void extend_by_poles(Box3& box, const TopoDS_Face& face, const GeomAdaptor_Surfa
 FaceMoments face_moments(const TopoDS_Face& face) {
   if (const auto ellipsoid = ellipsoid_of(face)) return moments_of(*ellipsoid);
   const BoundaryIntegral integral(face);
-  const Components& c = integral.total();
+  const Moments& c = integral.total();
   // A left-handed surface needs no special case: du x dv is the normal that FORWARD means.
   const double sign = face.Orientation() == TopAbs_REVERSED ? -1 : 1;
   return {c[0], sign * Vec3{c[1], c[2], c[3]}, sign * Vec3{c[4], c[5], c[6]}, sign * Vec3{c[7], c[8], c[9]}};
