@@ -54,9 +54,10 @@ void ShellWriter::write_cut(const SpherePieces& cut, const Index3& cell) {
 }
 
 const SphereFace& ShellWriter::sphere_face(const SphereSurface& sphere, std::uint32_t index) {
-  if (growing_ == nullptr || growing_->spheres.contains(index)) return known_.spheres.at(index);
+  SphereFaces& spheres = *known_.spheres;
+  if (const auto found = spheres.find(index); found != spheres.end()) return found->second;
   const FaceTemplate& face = template_.faces[index];
-  SphereFace& made = growing_->spheres[index];
+  SphereFace& made = spheres[index];
   made.cut = divided(sphere, face, template_);
   const bool is_cut = !made.cut.edges.empty();
   made.pieces =

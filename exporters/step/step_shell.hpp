@@ -20,12 +20,14 @@ struct SphereFace {
   bool touches_itself = false;  ///< all the same: see StepCounts
 };
 
+using SphereFaces = std::map<std::uint32_t, SphereFace>;  ///< by face of a template
+
 /// The numbers of what several faces share, in `vertices` and `edges`, and of the faces.
 struct ShellNumbers {
   brep::InstanceMap<StepId> vertices, edges;
   std::vector<StepId> faces;
-  std::map<std::uint32_t, SphereFace> spheres;  ///< by face of the template
-  std::uint64_t touching = 0;                   ///< faces whose loops touch
+  std::uint64_t touching = 0;      ///< faces whose loops touch
+  SphereFaces* spheres = nullptr;  ///< of the shell's template: shells that share one look for clear frames once
 };
 
 /// Vertices and edges are written when a face first uses them, and never twice.

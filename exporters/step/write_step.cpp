@@ -82,6 +82,7 @@ class BodyWriter {
     NumberedShell& added = group_.emplace_back();
     added.solid = &solid;
     added.shell = &shell;
+    added.numbers.spheres = &spheres_[shell.geometry.get()];
     shell.visit([&](const FaceInstance& instance) { added.faces.push_back(instance); });
     in_group_ += added.faces.size();
     if (in_group_ >= group_faces) write_group();
@@ -111,6 +112,7 @@ class BodyWriter {
       bytes_ += done.bytes;
     }
     group_.clear();
+    spheres_.clear();
     in_group_ = 0;
   }
 
@@ -160,6 +162,7 @@ class BodyWriter {
   ByteSink& sink_;
   std::deque<NumberedShell> group_;  ///< shells that are not yet written
   std::size_t in_group_ = 0;         ///< faces
+  std::map<const Template*, SphereFaces> spheres_;
   std::map<const Solid*, SolidNumbers> solids_;
   std::vector<StepId> items_;
   Directions directions_;
