@@ -19,6 +19,22 @@ bool on_wall(double value, double low, double high, double tolerance) {
   return std::fabs(value - low) < tolerance || std::fabs(value - high) < tolerance;
 }
 
+/// Where a coordinate was written to few digits (3.333333 in a box of 10/3) and was meant to be on a wall, it is put
+/// there: a ball and its copy from the next cell must be one, not two that differ by 1e-7.
+Vec3 on_near_walls(Vec3 p, const Box3& box, double tolerance) {
+  for (std::size_t i = 0; i < 3; ++i)
+    for (const double wall : {box.min[i], box.max[i]})
+      if (std::fabs(p[i] - wall) < tolerance) p[i] = wall;
+  return p;
+}
+
+CellPrimitive on_near_walls(const CellPrimitive& primitive, const Box3& box, double tolerance) {
+  const auto moved = [&](Vec3 p) { return on_near_walls(p, box, tolerance); };
+  if (const Ball* ball = std::get_if<Ball>(&primitive)) return Ball{moved(ball->centre), ball->radius};
+  const auto& strut = std::get<Frustum>(primitive);
+  return Frustum{moved(strut.start), moved(strut.end), strut.start_radius, strut.end_radius};
+}
+
 /// The seam goes where the box walls cut the ball anyway: fewer edges, and pieces that can be joined again.
 TopoDS_Shape to_solid(const Ball& ball, const CellShape& cell) {
   const double tolerance = cell.tolerance();
@@ -184,9 +200,11 @@ std::vector<CellPrimitive> balls_of(const CellShape& cell, const Index3& shift, 
 }  // namespace
 
 std::optional<CellShape> cell_shape(const LatticeCell& cell, DiagnosticSink& sink) {
-  CellShape shape{.box = cell.box, .solids = {}, .primitives = cell.primitives};
+  CellShape shape{.box = cell.box, .solids = {}, .primitives = {}};
+  for (const CellPrimitive& primitive : cell.primitives)
+    shape.primitives.push_back(on_near_walls(primitive, cell.box, shape.tolerance()));
   try {
-    for (const CellPrimitive& primitive : cell.primitives) {
+    for (const CellPrimitive& primitive : shape.primitives) {
       if (!std::visit([&](const auto& p) { return usable(p, shape.tolerance()); }, primitive)) {
         sink.report({.code = Code::geometry_not_repeatable, .args = {"a ball or strut without extent"}});
         return {};
