@@ -297,6 +297,29 @@ bool is_within(const CellPrimitive& primitive, const std::vector<CellPrimitive>&
          });
 }
 
+/// The union of `solids`, cut to the box; of `primitives`, if these are known. Else `fault` says what is wrong.
+std::optional<TopoDS_Shape> fused_in_box(const std::vector<TopoDS_Shape>& solids,
+                                         const std::vector<CellPrimitive>& primitives, const CellShape& cell,
+                                         double fuzzy, const RunOptions& run, const char*& fault) {
+  try {
+    const TopoDS_Shape whole = fused(solids, fuzzy, run);
+    std::optional<TopoDS_Shape> inside;
+    for (const double wider : {0.0, cell.tolerance() / 2})
+      if (!inside && !whole.IsNull()) inside = cut_to_box(whole, cell, wider, run);
+    fault = "the unit cell cannot be cut to its box";
+    if (!inside || primitives.empty()) return inside;
+    const Vec3 size = cell.size();
+    fault = "the fused unit cell is not the union of its balls and struts";
+    if (!on_union(*inside, primitives, cell.box, cell.tolerance()) ||
+        contradicts(volume_of(*inside), sampled_volume(primitives, cell.box), size.x * size.y * size.z, 2e-3))
+      return {};
+    return inside;
+  } catch (const Standard_Failure&) {
+    fault = "the unit cell cannot be fused";
+    return {};
+  }
+}
+
 }  // namespace
 
 std::optional<TopoDS_Shape> solid_in_box(const CellShape& cell, const Reach& reach,
@@ -319,25 +342,11 @@ std::optional<TopoDS_Shape> solid_in_box(const CellShape& cell, const Reach& rea
     solids.push_back(cell.solids[part.solid].Moved(TopLoc_Location(move)));
   }
   if (solids.empty()) return TopoDS_Shape();
+  // Surfaces that nearly coincide, or nearly meet in one curve, intersect at one tolerance and not at another.
+  const double least = std::ranges::any_of(primitives, tapers) ? cell.tolerance() / 4 : 0;
   const char* fault = nullptr;
-  try {
-    const double fuzzy = std::ranges::any_of(primitives, tapers) ? cell.tolerance() / 4 : 0;
-    const TopoDS_Shape whole = fused(solids, fuzzy, run);
-    std::optional<TopoDS_Shape> inside;
-    for (const double wider : {0.0, cell.tolerance() / 2})
-      if (!inside && !whole.IsNull()) inside = cut_to_box(whole, cell, wider, run);
-    if (!inside) {
-      fault = "the unit cell cannot be cut to its box";
-    } else if (!primitives.empty()) {
-      const double volume = volume_of(*inside), box_volume = size.x * size.y * size.z;
-      if (!on_union(*inside, primitives, cell.box, cell.tolerance()) ||
-          contradicts(volume, sampled_volume(primitives, cell.box), box_volume, 2e-3))
-        fault = "the fused unit cell is not the union of its balls and struts";
-    }
-    if (!fault) return *inside;
-  } catch (const Standard_Failure&) {
-    fault = "the unit cell cannot be fused";
-  }
+  for (const double fuzzy : {least, cell.tolerance() / 2})
+    if (auto inside = fused_in_box(solids, primitives, cell, fuzzy, run, fault)) return inside;
   sink.report({.code = Code::geometry_not_repeatable, .args = {fault}});
   return {};
 }
