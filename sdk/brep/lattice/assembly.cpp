@@ -271,8 +271,8 @@ bool any_walls_overlap(const Layout& layout) {
 
 struct ShellNodes {
   std::vector<std::uint32_t> nodes;
-  double volume = 0;
   std::uint32_t solid = 0;
+  Enclosed enclosed;
 };
 
 /// Shells in the order of their first cell.
@@ -282,14 +282,11 @@ std::vector<ShellNodes> collect_shells(const Layout& layout, UnionFind& nodes, U
   std::vector<std::uint32_t> shell_of(std::size_t{layout.cells().count()} * layout.clusters(), none);
   for (std::uint32_t node = 0; node < shell_of.size(); ++node) {
     const std::uint32_t cell = node / layout.clusters(), cluster = node % layout.clusters();
-    double volume = 0;
-    bool any = false;
+    Enclosed enclosed;
     layout.visit_node(node, [&](const FaceInstance& instance) {
-      const FaceMoments& m = geometry.faces[instance.face].moments;
-      const Vec3 t = cell_origin(geometry, instance.cell);
-      volume += (m.volume_moment.x + m.volume_moment.y + m.volume_moment.z + dot(t, m.vector_area)) / 3;
-      any = true;
+      enclosed.add(geometry.faces[instance.face], cell_origin(geometry, instance.cell));
     });
+    const bool any = !enclosed.empty();
     const std::uint32_t root = nodes.root(node);
     if (!any && root == node) continue;  // a cluster of walls of which none shows
     const CellKind& kind = layout.quotient().kinds[layout.kind(layout.cells().cell(cell))];
@@ -299,7 +296,7 @@ std::vector<ShellNodes> collect_shells(const Layout& layout, UnionFind& nodes, U
     }
     ShellNodes& shell = shells[shell_of[root]];
     if (any) shell.nodes.push_back(node);
-    shell.volume += volume;
+    shell.enclosed.add(enclosed);
   }
   return shells;
 }
@@ -351,12 +348,12 @@ std::optional<Body> assemble(Quotient quotient, KeptCells cells, CellKinds kinds
   std::vector<std::uint32_t> owners;
   double volume = 0;
   for (const ShellNodes& found : shells) {
-    volume += found.volume;
+    volume += found.enclosed.volume();
     Shell shell{.geometry = geometry, .placement = {}, .visit = {}};
     shell.visit = [layout, nodes = found.nodes](const std::function<void(const FaceInstance&)>& callback) {
       for (const std::uint32_t node : nodes) layout->visit_node(node, callback);
     };
-    if (found.volume < 0) {
+    if (found.enclosed.volume() < 0) {
       voids[found.solid].push_back(std::move(shell));
     } else {
       owners.push_back(found.solid);

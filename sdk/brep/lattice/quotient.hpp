@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "lattice/cell_solid.hpp"
+#include "lattice/enclosed.hpp"
 #include "lattice/union_find.hpp"
 #include "meso/brep/body.hpp"
 

@@ -191,9 +191,6 @@ bool Builder::add_faces(const RunOptions& run) {
           const OrbitMatcher::Match& match = source.matches[use.edge];
           use = {.edge = match.edge, .offset = match.offset, .reversed = use.reversed != match.flipped};
         }
-      // About the cell's middle: what edges lack that are known to 1e-7 mm counts for least there.
-      const Vec3 moment = value.moments.volume_moment, middle = 0.5 * (cell_.box.min + cell_.box.max);
-      kind.volume += (moment.x + moment.y + moment.z - dot(middle, value.moments.vector_area)) / 3;
       CellFace face{.face = static_cast<std::uint32_t>(geometry_.faces.size())};
       classify(face, value, TopoDS::Face(it.Current()));
       if (face.axis >= 0) {
@@ -204,6 +201,9 @@ bool Builder::add_faces(const RunOptions& run) {
       kind.shapes.push_back(TopoDS::Face(it.Current()));
       geometry_.faces.push_back(std::move(value));
     }
+    Enclosed enclosed;
+    for (const CellFace& face : kind.faces) enclosed.add(geometry_.faces[face.face], {});
+    kind.volume = enclosed.volume();
     if (polygons_) add_meshes_of(source, kind);
   }
   quotient_.uses.resize(geometry_.edges.size());
