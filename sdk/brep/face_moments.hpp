@@ -8,9 +8,9 @@
 namespace meso::brep {
 
 /// Integrals over `face`, outward as its orientation says, about the origin. Relative error about 1e-12 where the
-/// pcurves are exact; else what the pcurves miss (their tolerance times the edge length). Cost: 30 points of each smooth
-/// span of an edge at least; on surfaces that are not elementary, ten and more of the surface for each (a few ms for a
-/// B-spline surface). Throws Standard_Failure as OCCT does.
+/// pcurves are exact; else what the pcurves miss (their tolerance times the edge length). Cost: 30 points of each
+/// smooth span of an edge at least; on surfaces that are not elementary, ten and more of the surface for each (a few ms
+/// for a B-spline surface). Throws Standard_Failure as OCCT does.
 [[nodiscard]] FaceMoments face_moments(const TopoDS_Face& face);
 
 /// A box that contains the exact face: tight for planes, quadrics and tori; for B-spline surfaces as OCCT finds it.
