@@ -44,6 +44,11 @@ class WordsAsDocuments(Command):
         "box scale 2 ball scale 2.4 difference rotate 1,2,3 0.7 -s 24^3",
         "strut.octet 0.07 def core box scale 1.2 dup shell 0.2 swap recall core intersection union -s 24^3",
         "ball box move 1,1,1 smooth-union 0.3 mirror 1,1,0 complement -s 20^3",
+        "tpms.gyroid density 0.4 cylindrical 12 cylinder scale 2.9 intersection cylinder difference -b -3,-3,0,3,3,2 -s 30^3",
+        "strut.octet 0.07 scale 0.8 cylindrical 10 -b -2,-2,-1,2,2,1 -s 24^3",
+        "tpms.p shell 0.6 spherical 12,6 ball scale 2.9 intersection half-space 1,-1,0,0 intersection -s 30^3",
+        "tpms.p shell 0.8 helix 8,3 cylinder scale 2.9 intersection cylinder scale 0.9 difference -b -3,-3,0,3,3,4 -s 30^3",
+        "tpms.d helix 3,-1 rotate 1,1,0 0.5 cylindrical -7 shell 0.4 box ball move 1,0,0 union spherical -3,2 union -b -2,-2,-2,2,2,2 -s 24^3",
         "tpms.gyroid tpms.d blend '(x + 1)/2' -s 20^3",
     ]
 
@@ -79,7 +84,8 @@ class WordsAsDocuments(Command):
     def test_what_cannot_be_said_is_named(self):
         self.meso(4, "sdf", "ball box union shell 0.1 -o part.meso", says="SDF_NOT_A_DOCUMENT: no document is written: 'shell'")
         self.assertFalse((self.folder / "part.meso").exists())
-        self.meso(4, "sdf", "tpms.gyroid cylindrical 8 -o part.meso", says="'cylindrical'")
+        self.meso(0, "sdf", "tpms.gyroid cylindrical 8 -o bent.meso")
+        self.meso(4, "convert", "bent.meso bent.step", says="CONFORMAL_NOT_REALISED")
         self.meso(2, "sdf", "ball --sharp -o part.meso", says="USAGE")
         self.meso(0, "sdf", "ball -s 20^3 -o ball.stl")
         (self.folder / "deep").mkdir()

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "affine_map.hpp"
+#include "bent_part.hpp"
 #include "meso/eval/bounds.hpp"
 #include "placed_cells.hpp"
 
@@ -90,7 +91,17 @@ void CellPrimitives::add_beams(const eval::BeamsShape& beams, std::vector<Primit
   }
 }
 
+bool CellPrimitives::add_bent_part(const PartBody& body, const eval::PlacedCell& cell, std::vector<Primitive>& made) {
+  if (!part_) part_ = shapes_.make({eval::PartShape{evaluation_.find_part(body.part.text)}, body.id_in_source});
+  const auto bent = part_ ? bent_part(cells_, cell, *part_, report_) : std::nullopt;
+  if (!bent) return false;
+  add_field(*bent, made);
+  return true;
+}
+
 bool CellPrimitives::make(const eval::PlacedCell& cell, std::vector<Primitive>& made) {
+  const auto* part = std::get_if<PartBody>(&cells_.unit_cell().body);
+  if (part != nullptr && cell.mapping == CellMapping::conformal) return add_bent_part(*part, cell, made);
   const auto shape = cells_.shape(cell, report_.sink());
   if (!shape) return false;
   const bool clipped = cells_.unit_cell().clip_to_box.value_or(false);

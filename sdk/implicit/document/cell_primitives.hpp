@@ -18,8 +18,9 @@ void add_field(const Field& field, std::vector<Primitive>& into);
 
 class CellPrimitives {
  public:
-  CellPrimitives(const eval::CellStream& cells, ShapeFields& shapes, const Reporter& report)
-      : cells_(cells), shapes_(shapes), report_(report) {}
+  CellPrimitives(const eval::Evaluation& evaluation, const eval::CellStream& cells, ShapeFields& shapes,
+                 const Reporter& report)
+      : evaluation_(evaluation), cells_(cells), shapes_(shapes), report_(report) {}
 
   /// In the world. False if something was reported. REQUIRES: no implicit body.
   [[nodiscard]] bool add(const eval::PlacedCell& cell, std::vector<Primitive>& into);
@@ -27,12 +28,15 @@ class CellPrimitives {
 
  private:
   [[nodiscard]] bool make(const eval::PlacedCell& cell, std::vector<Primitive>& made);
+  [[nodiscard]] bool add_bent_part(const PartBody& body, const eval::PlacedCell& cell, std::vector<Primitive>& made);
   void add_beams(const eval::BeamsShape& beams, std::vector<Primitive>& into);
 
+  const eval::Evaluation& evaluation_;
   const eval::CellStream& cells_;
   ShapeFields& shapes_;
   const Reporter& report_;
   std::map<std::vector<double>, std::vector<Primitive>> known_;  ///< by parameters, in cell coordinates
+  std::optional<Field> part_;                                    ///< that is bent, once it is made
   double smallest_ = HUGE_VAL;
 };
 

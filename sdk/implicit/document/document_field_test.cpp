@@ -235,6 +235,45 @@ TEST(DocumentField, ConformalFormulasCellByCell) {
   EXPECT_NEAR(volume_by_points(document.field(), 40), pi * (inner + outer) * 4.5, 3);
 }
 
+/// A part in the cell's box from (4, -1, -2), 3 x 2 x 4 in size; six around, so a unit of y is a twelfth of a turn.
+std::string bent_part(const std::string& body, const std::string& steps, const std::string& clip = "clipToBox='true'") {
+  const std::string pattern =
+      "<loop index='i' axis='r' count='1' start='4' spacing='3'/><loop index='j' axis='phi' count='6' start='-30deg' "
+      "spacing='60deg'/><loop index='k' axis='z' count='1' start='-2' spacing='4'/>";
+  return polar + macrostructure(body) + "<unitCells><unitCell id='u' " + clip +
+         "><box x='4' y='-1' z='-2' dx='3' dy='2' dz='4'/><part ref='q'/></unitCell><unitCell id='bar'><beams "
+         "radius='0.4' cap='sphere'><node id='a' x='5.5' y='-0.3' z='-1'/><node id='b' x='5.5' y='-0.3' z='1'/><beam "
+         "from='a' to='b'/></beams></unitCell></unitCells><patterns><pattern id='bars' unitCell='bar'><list><place "
+         "at='0'/></list></pattern><pattern id='c' unitCell='u' coordinateSystem='s' mapping='conformal'>" +
+         pattern + "</pattern></patterns><parts><part id='q'" + (steps.empty() ? " macrostructure='m'>" : ">") + steps +
+         "</part><part id='p'><apply pattern='c' operation='union'/></part></parts>";
+}
+
+// What stands at r takes up r times its angle: the volume is that of the moment about the z axis (Pappus).
+TEST(DocumentField, PartsAreBentPointByPoint) {
+  const double turn = 2 * pi;
+  const TestDocument ball(bent_part("<sphere x='5.5' y='0.1' z='0.5' radius='0.8'/>", ""));
+  EXPECT_NEAR(volume_by_points(ball.field()), 6 * 4. / 3 * pi * std::pow(0.8, 3) * 5.5 * turn / 12, 0.3);
+  // Cut to the bent box where it begins, at 4.
+  const TestDocument cut(bent_part("<box x='3' y='-1' z='-1' dx='2' dy='2' dz='1'/>", ""));
+  RandomPoints points({{-6, -6, -2}, {6, 6, 2}});
+  for (int n = 0; n < 5000; ++n) {
+    const Vec3 p = points();
+    const double r = std::hypot(p.x, p.y), outside = std::max({4 - r, r - 5, -1 - p.z, p.z});
+    if (std::abs(outside) < 1e-4) continue;
+    ASSERT_EQ(cut.field().value(p) < 0, outside < 0) << p.x << " " << p.y << " " << p.z;
+  }
+  // Struts are asked for, not written out.
+  const TestDocument bars(bent_part("<sphere radius='1'/>", "<apply pattern='bars' operation='union'/>"));
+  const double bar = pi * 0.16 * 2 + 4. / 3 * pi * 0.064;
+  EXPECT_NEAR(volume_by_points(bars.field()), 6 * bar * 5.5 * turn / 12, 0.5);
+  for (int n = 0; n < 6; ++n) {
+    const double angle = turn * (-0.3 / 12 + n / 6.);
+    EXPECT_LT(bars.field().value({5.5 * std::cos(angle), 5.5 * std::sin(angle), 1.3}), 0);
+    EXPECT_GT(bars.field().value({5.5 * std::cos(angle), 5.5 * std::sin(angle), 1.5}), 0);
+  }
+}
+
 TEST(DocumentField, SphericalAndConicalElements) {
   const std::string systems =
       "<coordinateSystems><coordinateSystem id='s'><placement matrix='0,-1,0,1, 1,0,0,2, 0,0,1,3'/><axis name='r' "
@@ -332,6 +371,7 @@ TEST(DocumentField, WhatCannotBeIsTold) {
   };
   const std::string whole = part_of("<apply pattern='c' operation='union'/>", false);
   EXPECT_EQ(code(tube("<implicit surface='gyroid'/>", 21, 18) + whole), Code::conformal_overlap);
+  EXPECT_EQ(code(bent_part("<sphere x='5.5' radius='0.8'/>", "", "")), Code::conformal_not_realised);
   const std::string swept =
       "<coordinateSystems><coordinateSystem id='s'><axis name='r' kind='distance' x='1'/><axis name='t' "
       "kind='circular' z='1'/>"

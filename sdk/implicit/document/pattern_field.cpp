@@ -50,7 +50,7 @@ std::optional<Field> field_of_cell(const eval::Evaluation& evaluation, const eva
                                    const eval::PlacedCell& cell, ShapeFields& shapes, const Reporter& report) {
   if (is_implicit(cells)) return implicit_cell(evaluation, cells, cell, report);
   std::vector<Primitive> primitives;
-  if (!CellPrimitives(cells, shapes, report).add(cell, primitives)) return std::nullopt;
+  if (!CellPrimitives(evaluation, cells, shapes, report).add(cell, primitives)) return std::nullopt;
   return placed_cells(std::move(primitives), {});
 }
 
@@ -58,7 +58,7 @@ std::optional<PatternField> field_of_pattern(const eval::Evaluation& evaluation,
                                              const KeepCell& keep, ShapeFields& shapes, double reach,
                                              const RunOptions& run, const Reporter& report) {
   if (is_implicit(cells)) return implicit_pattern(evaluation, cells, keep, run, report);
-  CellPrimitives bodies(cells, shapes, report);
+  CellPrimitives bodies(evaluation, cells, shapes, report);
   PatternField result{nothing()};
   result.placed = cells.size();
   const auto lattice = keep ? std::nullopt : cells.lattice();

@@ -5,6 +5,7 @@
 //   cells                                          become
 //   beams                                          capsules and cones in PlacedCells
 //   implicit, repeating over boxes side by side    one term of the whole, cut to the boxes
+//   parts that a conformal mapping bends           a field for each cell in PlacedCells
 //   anything else                                  fields in PlacedCells, one for each different cell
 //   translates of one lattice                      one period, counted
 

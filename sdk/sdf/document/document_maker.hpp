@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 // Makes a document of a tree of solids, operand by operand: what stands in the document already is not made again.
-// Bodies of primitives and files: make_bodies.cpp; unit cells and their levels: make_cells.cpp; the rest:
-// make_document.cpp.
+// Bodies of primitives and files: make_bodies.cpp; unit cells and their levels: make_cells.cpp; what is bent:
+// make_bends.cpp; the rest: make_document.cpp.
 
 #include <algorithm>
 #include <array>
@@ -15,6 +15,7 @@
 #include "meso/base/number.hpp"
 #include "meso/sdf/solid_tree.hpp"
 #include "meso/sdf_document/words_and_documents.hpp"
+#include "region.hpp"
 
 namespace meso::sdf {
 
@@ -24,6 +25,7 @@ inline bool is_move(Verb verb) {
   return verb == Verb::move || verb == Verb::scale || verb == Verb::rotate || verb == Verb::orient ||
          verb == Verb::mirror;
 }
+inline bool is_bend(Verb verb) { return verb == Verb::cylindrical || verb == Verb::spherical || verb == Verb::helix; }
 inline bool is_level(Verb verb) {
   return verb == Verb::offset || verb == Verb::shell || verb == Verb::eccentric_shell || verb == Verb::density ||
          verb == Verb::complement;
@@ -38,10 +40,8 @@ struct Operand {
   std::string id;
 };
 
-/// Rounded outwards, with room to spare: nothing is cut there.
-Box3 with_room(const Box3& region);
-
-/// A level of a solid that was moved is a move of the level: the same function. Cells have levels, moves stand outside.
+/// A level of a solid that was moved or bent is a move or a bend of the level: the same function. Cells have levels,
+/// moves stand outside.
 SolidTree moves_last(const SolidTree& tree);
 
 class DocumentMaker {
@@ -60,6 +60,8 @@ class DocumentMaker {
   std::optional<Operand> complement(Index node, const Box3& region);
   std::optional<Operand> moved(Index node, const Box3& region);
   std::optional<Operand> repeated(Index node, const Box3& region);
+  std::optional<Operand> bent(Index node, const Box3& region);
+  std::string sheared(Index node, const std::string& part);
   std::optional<Operand> strut(Index node, const Box3& region, const Instruction* scale);
   std::optional<Operand> file(Index node);
   /// A leaf or a blend of leaves, perhaps scaled, and what was done to its levels, inmost first.

@@ -85,7 +85,9 @@ std::string prefix_of_matrix(std::string_view matrix, std::string (*make)(const 
   const std::string pattern = make("?");
   const std::size_t at = pattern.find('?');
   if (matrix.substr(0, at) != pattern.substr(0, at)) return {};
-  const std::size_t end = matrix.find('X', at);
+  // What stands behind the prefix the first time.
+  const std::string behind = pattern.substr(at + 1, pattern.find('?', at + 1) - at - 1);
+  const std::size_t end = matrix.find(behind, at);
   if (end == std::string_view::npos) return {};
   std::string prefix(matrix.substr(at, end - at));
   return make(prefix) == matrix ? prefix : std::string();

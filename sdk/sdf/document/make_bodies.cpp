@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "document_maker.hpp"
 #include "leaf_formulas.hpp"
-#include "region.hpp"
 
 namespace meso::sdf {
 

@@ -4,22 +4,8 @@
 
 #include "document_maker.hpp"
 #include "leaf_formulas.hpp"
-#include "region.hpp"
 
 namespace meso::sdf {
-
-Box3 with_room(const Box3& region) {
-  Box3 box;
-  for (std::size_t a = 0; a < 3; ++a) {
-    const double size = region.max[a] - region.min[a];
-    const double digits = std::floor(std::log10(size)) - 1, step = std::pow(10, std::abs(digits));
-    const auto rounded = [&](double steps) { return digits < 0 ? steps / step : steps * step; };
-    const auto in_steps = [&](double v) { return digits < 0 ? v * step : v / step; };
-    box.min[a] = rounded(std::floor(in_steps(region.min[a])) - 1);
-    box.max[a] = rounded(std::ceil(in_steps(region.max[a])) + 1);
-  }
-  return box;
-}
 
 static bool is_rigid(Verb verb) { return is_move(verb) && verb != Verb::scale; }
 
@@ -35,7 +21,7 @@ SolidTree moves_last(const SolidTree& tree) {
     for (const Index part : node.of) of.push_back(number[part]);
     std::vector<const Instruction*> moves;
     if (is_level(node.made_by->verb) && node.made_by->text.empty() && node.made_by->verb != Verb::density)
-      while (is_rigid(result.nodes[of[0]].made_by->verb)) {
+      while (is_rigid(result.nodes[of[0]].made_by->verb) || is_bend(result.nodes[of[0]].made_by->verb)) {
         moves.push_back(result.nodes[of[0]].made_by);
         of[0] = result.nodes[of[0]].of[0];
       }
@@ -99,7 +85,7 @@ std::optional<Operand> DocumentMaker::new_operand(Index node, const Box3& region
     case Verb::cylindrical:
     case Verb::spherical:
     case Verb::helix:
-      return fault(node, "documents bend cells, not solids; write a pattern with mapping=\"conformal\"");
+      return bent(node, region);
     default:
       break;
   }

@@ -4,6 +4,7 @@
 #include <map>
 #include <numbers>
 
+#include "bends.hpp"
 #include "leaf_formulas.hpp"
 #include "meso/base/number.hpp"
 #include "meso/expr/expression.hpp"
@@ -36,6 +37,7 @@ class DocumentReader {
   }
   bool pattern(const Pattern& pattern, const Box3& region);
   bool moved_part(const PartBody& body, const Pattern& pattern, const Box3& region);
+  bool bent_part(const UnitCell& cell, const Pattern& pattern, const Box3& region);
   bool repeated_part(const UnitCell& cell, const PartBody& body, const Pattern& pattern, const Box3& region);
   bool struts(const UnitCell& cell, const Pattern& pattern, const Box3& region);
   bool surface(const UnitCell& cell, const ImplicitBody& body, const Pattern& pattern, const Box3& region);
@@ -279,9 +281,9 @@ bool DocumentReader::fills(const Pattern& pattern, const Box3& region, Vec3 size
 
 bool DocumentReader::pattern(const Pattern& pattern, const Box3& region) {
   where_ = "pattern '" + pattern.id.text + "'";
-  if (pattern.mapping.value_or(CellMapping::rigid) == CellMapping::conformal) return no("cells that are bent");
-  if (pattern.coordinate_system) return no("a coordinate system");
   const UnitCell& cell = *find(evaluation_.document().unit_cells, pattern.unit_cell.text);
+  if (pattern.mapping.value_or(CellMapping::rigid) == CellMapping::conformal) return bent_part(cell, pattern, region);
+  if (pattern.coordinate_system) return no("a coordinate system");
   if (cell.library) return struts(cell, pattern, region);
   if (const auto* body = std::get_if<PartBody>(&cell.body))
     return pattern.fill ? repeated_part(cell, *body, pattern, region) : moved_part(*body, pattern, region);
@@ -321,6 +323,36 @@ bool DocumentReader::moved_part(const PartBody& body, const Pattern& pattern, co
   }
   if (!part(*evaluation_.find_part(body.part.text), where)) return false;
   words_.insert(words_.end(), std::make_move_iterator(moves.rbegin()), std::make_move_iterator(moves.rend()));
+  return true;
+}
+
+// The part's box is what one turn, or one turn from pole to pole, shows.
+bool DocumentReader::bent_part(const UnitCell& cell, const Pattern& pattern, const Box3& region) {
+  const auto* body = std::get_if<PartBody>(&cell.body);
+  if (body == nullptr || !cell.box || !cell.clip_to_box.value_or(false) || !pattern.coordinate_system ||
+      !pattern.instructions.empty())
+    return no("bent cells that are not one part, cut to its box");
+  const auto& system = *find(evaluation_.document().coordinate_systems, pattern.coordinate_system->text);
+  const auto bend = read_bend(system, *cell.box, pattern, [&](const Expression& e) { return value(e); });
+  if (!why_.why.empty()) return false;
+  if (!bend) return no("a cell that is not bent once round the z axis, or once round from pole to pole");
+  if (!shows_all(*bend, region)) return no("a bent cell that does not reach to the bounds; words cut nothing");
+  const Part& solid = *evaluation_.find_part(body->part.text);
+  const Apply* only = !solid.macrostructure && solid.steps.size() == 1 ? solid.steps.data() : nullptr;
+  const std::string prefix = !bend->is_spherical && only != nullptr && only->part && only->placement
+                                 ? prefix_of_matrix(only->placement->matrix.text, shear_matrix)
+                                 : "";
+  if (!prefix.empty() && value(Expression{prefix + "Turn"}) == bend->turn) {
+    const double rise = value(Expression{prefix + "Rise"});
+    if (!part(*evaluation_.find_part(only->part->text), before_shear(bend->solid, rise))) return false;
+    push(Verb::helix, {bend->turn, rise});
+    return true;
+  }
+  if (!part(solid, bend->solid)) return false;
+  if (bend->is_spherical)
+    push(Verb::spherical, {bend->turn, bend->poles});
+  else
+    push(Verb::cylindrical, {bend->turn});
   return true;
 }
 

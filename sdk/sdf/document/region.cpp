@@ -28,6 +28,19 @@ Box3 before(const Instruction& instruction, const Box3& region) {
   return {{-reach, -reach, -reach}, {reach, reach, reach}};
 }
 
+Box3 with_room(const Box3& region) {
+  Box3 box;
+  for (std::size_t a = 0; a < 3; ++a) {
+    const double size = region.max[a] - region.min[a];
+    const double digits = std::floor(std::log10(size)) - 1, step = std::pow(10, std::abs(digits));
+    const auto rounded = [&](double steps) { return digits < 0 ? steps / step : steps * step; };
+    const auto in_steps = [&](double v) { return digits < 0 ? v * step : v / step; };
+    box.min[a] = rounded(std::floor(in_steps(region.min[a])) - 1);
+    box.max[a] = rounded(std::ceil(in_steps(region.max[a])) + 1);
+  }
+  return box;
+}
+
 bool holds(const Box3& outer, const Box3& inner) {
   for (std::size_t a = 0; a < 3; ++a)
     if (!(outer.min[a] <= inner.min[a] && outer.max[a] >= inner.max[a])) return false;

@@ -99,6 +99,17 @@ const char* const designs[] = {
     "ball scale 0.3 repeat 1,0.8,0.7 box intersection",
     "strut.bcc 0.08",
     "strut.octet 0.05 scale 2.5 ball scale 3 intersection",
+    "tpms.gyroid shell 0.3 cylindrical 12",
+    "tpms.gyroid density 0.4 cylindrical 12 cylinder scale 2.9 intersection cylinder difference -b -3,-3,0,3,3,2",
+    "tpms.p cylindrical -5 shell '0.3' -b -1,-1,-1,2,2,1",
+    "strut.bcc 0.1 scale 0.5 cylindrical 4",
+    "ball move 1,0,0 box union cylindrical 7 move 0.1,0.2,0.3 cylindrical 3",
+    "expression 'x + y/3 + z^2 - 1' cylindrical 2",
+    "tpms.p shell 0.6 spherical 12,6 ball scale 2.9 intersection half-space 1,-1,0,0 intersection",
+    "strut.octet 0.06 spherical -7,-3 -b -2,-2,-2,2,2,2",
+    "tpms.p shell 0.8 helix 8,3 cylinder scale 2.9 intersection cylinder scale 0.9 difference -b -3,-3,0,3,3,4",
+    "strut.octet 0.06 helix -5,-2 rotate 1,1,1 0.4 -b -2,-2,-1,2,2,2",
+    "tpms.gyroid helix 5,0 complement",
     "ball dup box swap difference over union drop",
     "tpms.gyroid scale 2 def core ball scale 2 recall core intersection ball scale 0.5 union",
 };
@@ -164,23 +175,15 @@ TEST(WordsAndDocuments, EveryWordIsInADesign) {
     const auto program = program_of_line(design);
     for (const Instruction& word : program->instructions) said.insert(std::string(word_of(word.verb)));
   }
-  for (const Vocable& v : vocabulary())
-    EXPECT_TRUE(said.contains(std::string(v.word)) || v.word == "file" || v.word == "cylindrical" ||
-                v.word == "spherical" || v.word == "helix")
-        << v.word;
+  for (const Vocable& v : vocabulary()) EXPECT_TRUE(said.contains(std::string(v.word)) || v.word == "file") << v.word;
 }
 
 TEST(WordsAndDocuments, WhatADocumentCannotSayIsNamed) {
   const std::pair<const char*, const char*> cases[] = {
-      {"tpms.gyroid cylindrical 8", "cylindrical"},
-      {"tpms.gyroid spherical 8,4 ball intersection", "spherical"},
-      {"tpms.gyroid helix 8,1", "helix"},
-      {"ball box union shell 0.1", "shell"},
-      {"tpms.gyroid shell 0.1 shell 0.05", "shell"},
-      {"tpms.gyroid offset 0.1 offset 0.1", "offset"},
-      {"cone 1,0,1 offset 0.1", "cone"},
-      {"strut.bcc 0.1 offset 0.1", "offset"},
-      {"ball repeat 1,0,1", "repeat"},
+      {"cone 1,0,1 offset 0.1 cylindrical 8", "cone"}, {"ball box union spherical 8,4 shell 0.1", "shell"},
+      {"ball box union shell 0.1", "shell"},           {"tpms.gyroid shell 0.1 shell 0.05", "shell"},
+      {"tpms.gyroid offset 0.1 offset 0.1", "offset"}, {"cone 1,0,1 offset 0.1", "cone"},
+      {"strut.bcc 0.1 offset 0.1", "offset"},          {"ball repeat 1,0,1", "repeat"},
       {"ball scale 1,2,3 shell 0.1", "scale"},
   };
   for (const auto& [design, word] : cases) {
@@ -192,6 +195,41 @@ TEST(WordsAndDocuments, WhatADocumentCannotSayIsNamed) {
     EXPECT_EQ(sink.diagnostics()[0].code, Code::sdf_not_a_document) << design;
     EXPECT_EQ(sink.diagnostics()[0].args[0], word) << design;
   }
+}
+
+// Of a document that bends otherwise than words do, why it is none is told; what bends alike in other words is printed.
+TEST(WordsAndDocuments, BendsThatNoWordSays) {
+  const auto program = program_of_line("tpms.gyroid helix 8,1 -b -1,-1,-1,1,1,1");
+  DiagnosticSink sink;
+  const std::string text = write_document(*document_of(*program, *program->box, "", sink));
+  const auto printed = [&](std::string_view was, std::string_view is) {
+    std::string changed = text;
+    const std::size_t at = changed.find(was);
+    if (at == std::string::npos) return "no '" + std::string(was) + "' in " + text;
+    changed.replace(at, was.size(), is);
+    auto read = read_document(changed, "part.meso", sink);
+    const auto checked = validate(std::move(read->document), std::move(read->source), ".", sink);
+    if (!checked) return render(sink.diagnostics().back());
+    WhyNot why;
+    const auto again = program_of(*eval::Evaluation::make(*checked, {}, sink), "", why);
+    const std::string bounds = " -b -1,-1,-1,1,1,1 -s 1e+06";
+    if (!again) return why.why;
+    const std::string line = command_line(*again);
+    return line.ends_with(bounds) ? line.substr(0, line.size() - bounds.size()) : line;
+  };
+  EXPECT_EQ(printed("gyroid", "gyroid"), "tpms.gyroid helix 8,1");
+  EXPECT_EQ(printed("id=\"helix2Turn\" value=\"8\"", "id=\"helix2Turn\" value=\"2*3\""), "tpms.gyroid helix 6,1");
+  EXPECT_EQ(printed("id=\"helix2Rise\" value=\"1\"", "id=\"helix2Rise\" value=\"-0.5\""), "tpms.gyroid helix 8,-0.5");
+  EXPECT_EQ(printed("spacing=\"2*pi\"", "spacing=\"360deg\""), "tpms.gyroid helix 8,1");
+  const std::string otherwise = "a cell that is not bent once round the z axis, or once round from pole to pole";
+  EXPECT_EQ(printed("spacing=\"2*pi\"", "spacing=\"pi\""), otherwise);
+  EXPECT_EQ(printed("start=\"-pi\"", "start=\"0\""), otherwise);
+  EXPECT_EQ(printed("kind=\"circular\" z=\"1\"", "kind=\"circular\" z=\"1\" x=\"0.1\""), otherwise);
+  EXPECT_EQ(printed("dx=\"1.6\"", "dx=\"1.5\""), otherwise);
+  EXPECT_EQ(printed(" clipToBox=\"true\"", ""), "bent cells that are not one part, cut to its box");
+  EXPECT_EQ(printed("helix2Rise/helix2Turn", "helix2Rise/8"), "a placement that is not written as a mirror or a scale");
+  EXPECT_EQ(printed("<mesh samples=\"1000000\" x=\"-1\"", "<mesh samples=\"1000000\" x=\"-2\""),
+            "a bent cell that does not reach to the bounds; words cut nothing");
 }
 
 }  // namespace

@@ -6,9 +6,9 @@
 //   const auto source = compile(part->field.term(), grid);
 //
 // Every body, pattern, mapping and rule of the document is understood, but for conformal mapping in coordinate systems
-// whose inverse is not known here. Bodies that touch are joined: operands of
-// unions and cells grow by `seam` (R-5.12.7 decides boundaries no finer). Boundary rules look at the 16 x 16 x 16
-// parts of each cell that the left operand's boundary may cross.
+// whose inverse is not known here, and of bodies other than implicit ones, boxes, beams and parts cut to their box.
+// Bodies that touch are joined: operands of unions and cells grow by `seam` (R-5.12.7 decides boundaries no finer).
+// Boundary rules look at the 16 x 16 x 16 parts of each cell that the left operand's boundary may cross.
 //
 // Millimetres, in the part's frame. Errors: an empty optional and what evaluation reports, CONFORMAL_*,
 // IMPLICIT_UNKNOWN_SURFACE, GEOMETRY_FRAGMENTS, LIMIT_*.
