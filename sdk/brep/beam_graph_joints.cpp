@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <set>
 
 #include "box_pairs.hpp"
 #include "meso/base/number.hpp"
@@ -55,6 +56,7 @@ class JointFinder {
   }
 
   std::optional<Joints> find() {
+    join_balls_that_meet();
     const BeamGraph& graph = joints_.graph;
     joints_.ends.resize(graph.struts.size());
     joints_.is_swallowed.assign(graph.struts.size(), false);
@@ -87,6 +89,27 @@ class JointFinder {
     const BeamGraph::Strut& s = joints_.graph.struts[l / 2];
     const double growth = (s.radius[1] - s.radius[0]) / length_of(joints_.graph, s);
     return leave_ball(ball, s.radius[l % 2], l % 2 == 0 ? growth : -growth);
+  }
+
+  /// Two balls meet in a circle, as those of a strut do that they swallow: between others a strut is put that they
+  /// swallow, too.
+  void join_balls_that_meet() {
+    BeamGraph& graph = joints_.graph;
+    std::set<std::array<std::uint32_t, 2>> have_strut;
+    for (const BeamGraph::Strut& s : graph.struts) have_strut.insert(s.node);
+    std::vector<Box3> boxes(graph.nodes.size());
+    for (std::uint32_t n = 0; n < graph.nodes.size(); ++n)
+      if (graph.nodes[n].radius > 0) grow(boxes[n], at(n), graph.nodes[n].radius);
+    std::set<std::array<std::uint32_t, 2>> meeting;
+    visit_meeting_pairs(boxes, [&](std::size_t i, std::size_t k) {
+      const auto a = static_cast<std::uint32_t>(std::min(i, k)), b = static_cast<std::uint32_t>(std::max(i, k));
+      const double both = graph.nodes[a].radius + graph.nodes[b].radius;
+      if (norm(at(a) - at(b)) < both - 1e-6 && !have_strut.contains({a, b})) meeting.insert({a, b});
+    });
+    for (const auto& nodes : meeting) {
+      const double thin = std::min(graph.nodes[nodes[0]].radius, graph.nodes[nodes[1]].radius) / 1000;
+      graph.struts.push_back({nodes, {thin, thin}});
+    }
   }
 
   bool measure_ends() {

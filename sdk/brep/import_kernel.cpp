@@ -17,6 +17,7 @@
 #include <istream>
 
 #include "boolean.hpp"
+#include "elementary_faces.hpp"
 #include "view_buffer.hpp"
 
 namespace meso::brep {
@@ -196,8 +197,9 @@ std::optional<Solids> read_iges_solids(const Resource& file, ElementId where, co
   }
   std::string fault = "no entity of it could be read";
   try {
-    const TopoDS_Shape shape = read_iges_shape(NamedFile(file, bytes->view()).name());
+    TopoDS_Shape shape = read_iges_shape(NamedFile(file, bytes->view()).name());
     if (!shape.IsNull()) {
+      shape = with_elementary_faces(shape);
       Solids solids = solids_of(shape);
       return solids.empty() ? with_cavities(sewn(shape)) : solids;
     }

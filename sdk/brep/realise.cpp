@@ -141,7 +141,9 @@ class PartFold {
       if (context_.sink.has_errors()) return false;
       if (may_be_graph && !graph_first && try_beam_graph(state, *cells, apply)) return true;
       if (context_.sink.has_errors() || !struts_fit(thickness, 0.4, apply)) return false;
-      made = apply_cells(state.solids, *cells, context, counts);
+      made = is_union ? apply_beams(*cells, context) : std::nullopt;
+      if (context_.sink.has_errors()) return false;
+      if (!made) made = apply_cells(state.solids, *cells, context, counts);
       if (made && !made->reaches && !state.solids.empty() && eval::must_reach(*cells, apply)) {
         eval::report_no_reach(evaluation_, *cells, part, context_.sink);
         return false;
@@ -207,6 +209,18 @@ class PartFold {
     state.body = std::move(graph->body);
     way = "beamGraph";
     return true;
+  }
+
+  /// Beams that cells share are joined once. Nothing, and no error, where the cells are to be joined as they are.
+  std::optional<FoldStep> apply_beams(const eval::CellStream& cells, const FoldContext& context) {
+    if (!may_be_beam_graph(cells) || cells.size() > options_.run.max_cells) return {};
+    const auto primitives = beam_graph_primitives(cells, context_);
+    if (!primitives) return {};
+    auto made = apply_solids({}, *primitives, context);
+    if (!made) return {};
+    counts.placed += cells.size();
+    counts.kept += cells.size();
+    return made;
   }
 
   std::optional<FoldStep> apply_part(const Solids& body, const Apply& apply, const FoldContext& context) {

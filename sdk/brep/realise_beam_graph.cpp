@@ -7,6 +7,7 @@
 #include "beam_graph_body.hpp"
 #include "meso/base/number.hpp"
 #include "meso/brep/measure.hpp"
+#include "solid_primitive.hpp"
 
 namespace meso::brep {
 namespace {
@@ -68,6 +69,20 @@ std::optional<BeamGraphPart> beam_graph_part(const eval::CellStream& cells, Elem
   if (snapped.count > 0)
     context.report(Code::geometry_radii_snapped, where, {std::to_string(snapped.count), format_number(snapped.most)});
   return BeamGraphPart{std::move(*body), kept};
+}
+
+std::optional<Solids> beam_graph_primitives(const eval::CellStream& cells, const SolidContext& context) {
+  SnappedRadii snapped;
+  std::string why;
+  const auto graph = beam_graph(cells, snapped, why, context);
+  if (!graph) return {};
+  Solids solids;
+  for (const BeamGraph::Strut& s : graph->struts)
+    solids.push_back(
+        frustum(graph->nodes[s.node[0]].position, graph->nodes[s.node[1]].position, s.radius[0], s.radius[1]));
+  for (const BeamGraph::Node& node : graph->nodes)
+    if (node.radius > 0) solids.push_back(BRepPrimAPI_MakeSphere(to_pnt(node.position), node.radius).Solid());
+  return solids;
 }
 
 }  // namespace meso::brep

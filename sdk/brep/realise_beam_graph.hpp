@@ -27,4 +27,8 @@ struct BeamGraphPart {
 [[nodiscard]] std::optional<BeamGraphPart> beam_graph_part(const eval::CellStream& cells, ElementId where,
                                                            const LatticeOptions& options, const SolidContext& context);
 
+/// The balls and struts of the cells, each once however many cells have it: their union is the body. Nothing, and no
+/// error in the sink, where struts end outside of balls. May throw Standard_Failure.
+[[nodiscard]] std::optional<Solids> beam_graph_primitives(const eval::CellStream& cells, const SolidContext& context);
+
 }  // namespace meso::brep

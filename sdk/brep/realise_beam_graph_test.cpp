@@ -202,6 +202,21 @@ TEST_F(BeamGraphTest, SmallerBallsKeepTheirShapeByBooleans) {
   EXPECT_TRUE(was_told(Code::geometry_struts_meet));
 }
 
+TEST_F(BeamGraphTest, BallsOfDifferentStrutsMayMeet) {
+  // Two struts side by side; the balls at their ends pass into each other, two by two.
+  const auto ball = [](const std::string& id, const std::string& x, const std::string& y) {
+    return "<node id='" + id + "' x='" + x + "' y='" + y + "' z='0' radius='0.9'/>";
+  };
+  const auto made =
+      realised(cell("<beams radius='0.5' nodeRadius='auto'>" + ball("a", "0", "0") + ball("b", "5", "0") +
+                    ball("c", "0", "1.5") + ball("d", "5", "1.5") + beam("a", "b") + beam("c", "d") + "</beams>") +
+               union_of(once));
+  const double s = std::sqrt(0.81 - 0.25), cap = pi * (0.9 - s) * (0.9 - s) * (1.8 + s) / 3,
+               lens = 2 * pi * 0.15 * 0.15 * (2.7 - 0.15) / 3;
+  expect_body(made, "beamGraph", 2 * (2 * (4 * pi / 3 * 0.729 - cap) + pi * 0.25 * (5 - 2 * s)) - 2 * lens);
+  EXPECT_EQ(made->body.solids.size(), 1u);
+}
+
 TEST_F(BeamGraphTest, StrutsThatCrossAwayFromNodesAreNotAGraph) {
   const auto made = realised(cell("<beams radius='0.5' nodeRadius='auto'>" + node("a", "0", "0", "0") +
                                   node("b", "4", "4", "0") + node("c", "0", "4", "0") + node("d", "4", "0", "0") +
@@ -238,15 +253,17 @@ TEST_F(BeamGraphTest, StrutsThatDoNotPartBeforeTheirEndsAreRefusedAtOnce) {
   EXPECT_EQ(sink_.diagnostics().back().code, Code::geometry_struts_thick);
 }
 
-/// Six sectors around the axis, from pole to pole or short of them; `bcc` in fractions of the sectors.
-std::string sphere(const std::string& cells, double from_deg, int rings) {
+/// Sectors around the axis, from pole to pole or short of them; `bcc` in fractions of the sectors.
+std::string sphere(const std::string& cells, double from_deg, int rings, int sectors = 6) {
   return "<coordinateSystems><coordinateSystem id='ball'><axis name='rho' kind='distance' x='1'/><axis name='phi' "
          "kind='circular' z='1'/><axis name='psi' kind='circular' y='-1'/></coordinateSystem></coordinateSystems>" +
          cells +
          union_of(
              "<loop index='i' axis='rho' count='1' start='10' spacing='4'/>"
-             "<loop index='j' axis='phi' count='6' spacing='60deg'/><loop index='k' axis='psi' count='" +
-                 std::to_string(rings) + "' start='" + std::to_string(from_deg) + "deg' spacing='30deg'/>",
+             "<loop index='j' axis='phi' count='" +
+                 std::to_string(sectors) + "' spacing='360deg/" + std::to_string(sectors) +
+                 "'/><loop index='k' axis='psi' count='" + std::to_string(rings) + "' start='" +
+                 std::to_string(from_deg) + "deg' spacing='30deg'/>",
              "coordinateSystem='ball' mapping='conformal'");
 }
 
@@ -265,6 +282,39 @@ TEST_F(BeamGraphTest, ATrussBendsIntoABallPolesIncluded) {
     struts += std::holds_alternative<CylinderSurface>(face.surface) ? 1 : 0;
   EXPECT_EQ(struts, 24u * 8 + 12u * 6);
   expect_triangles(made->body, 0.05);
+}
+
+/// Its middle to the middles of its sides.
+std::string cross(const std::string& radius) {
+  std::string nodes = node("c", "2.5", "2.5", "2.5"), beams;
+  const std::array<std::string, 2> sides{"0", "5"};
+  for (const std::string& side : sides) {
+    nodes += node("x" + side, side, "2.5", "2.5") + node("y" + side, "2.5", side, "2.5") +
+             node("z" + side, "2.5", "2.5", side);
+    for (const char* axis : {"x", "y", "z"}) beams += beam("c", axis + side);
+  }
+  return cell("<box dx='5' dy='5' dz='5'/><beams radius='" + radius + "' nodeRadius='auto'>" + nodes + beams +
+              "</beams>");
+}
+
+TEST_F(BeamGraphTest, StrutsOfAllCellsAroundAPoleMakeItsBall) {
+  // Rings of nodes at the middles of sectors and a node on each pole, where as many struts meet as there are sectors.
+  for (const int sectors : {5, 9, 16}) {
+    const auto made = realised(sphere(cross("0.1"), -90, 6, sectors), {.mesh = true, .deflection_mm = 0.01});
+    ASSERT_TRUE(made) << sectors;
+    EXPECT_EQ(made->way, "beamGraph");
+    EXPECT_EQ(made->body.solids.size(), 1u);
+    EXPECT_TRUE(audit(made->body).clean());
+    EXPECT_NEAR(measure(made->body).volume / made->body.pieces_volume, 1, 1e-9);
+    EXPECT_NEAR(norm(measure(made->body).centroid), 0, 1e-9);
+    // The pole is at 12 mm, half way through a cell of 4 mm from 10 mm; its first ring 15 degrees above it.
+    const double ball = 0.1 / (std::cos(pi / 24) * std::sin(pi / sectors));
+    std::size_t found = 0;
+    for (const FaceTemplate& face : made->body.solids[0].outer.geometry->faces)
+      if (const auto* s = std::get_if<SphereSurface>(&face.surface))
+        found += std::fabs(std::fabs(s->frame.origin.z) - 12) < 1e-9 && std::fabs(s->radius - ball) < 1e-9 ? 1 : 0;
+    EXPECT_GE(found, 2u);
+  }
 }
 
 TEST_F(BeamGraphTest, BeamsWithoutLengthOrAngleAreTold) {

@@ -22,6 +22,16 @@ class BeamsMaker {
     return Shape{std::move(shape_), beams_.id_in_source};
   }
 
+  bool append_pole_struts(PoleBalls& poles) {
+    if (!place_nodes() || !make_struts()) return false;
+    for (const Strut& s : shape_.struts) {
+      const Vec3 from = shape_.nodes[s.from].position, to = shape_.nodes[s.to].position;
+      if (is_on_pole(s.from)) poles.add(from, to, leaving_start(shape_, s));
+      if (is_on_pole(s.to)) poles.add(to, from, leaving_end(shape_, s));
+    }
+    return true;
+  }
+
  private:
   bool is_auto() const { return beams_.node_radius && beams_.node_radius->text == "auto"; }
 
@@ -83,12 +93,22 @@ class BeamsMaker {
     return true;
   }
 
-  /// A strut as its node sees it. `widening`: by how much it grows thicker away from there, per length.
-  struct Leaving {
-    Vec3 direction;
-    double radius = 0, widening = 0;
+  /// A strut at one of its nodes.
+  struct End {
+    Leaving strut;
     std::size_t from = 0, to = 0;  ///< nodes
   };
+
+  /// Where a step along one of the system's axes leads nowhere.
+  bool is_on_pole(std::size_t node) const {
+    if (!rules_.position || !rules_.period) return false;
+    for (std::size_t a = 0; a < 3; ++a) {
+      Vec3 beside = unplaced_[node];
+      beside[a] += rules_.period->size[a] / data_.millimeters() / 4;
+      if (norm(data_.millimeters() * rules_.position(beside) - shape_.nodes[node].position) <= same_point) return true;
+    }
+    return false;
+  }
 
   /// For each node the first that stands where it does: a mapping may put several on a pole or an axis.
   std::vector<std::size_t> first_nodes() const {
@@ -101,60 +121,60 @@ class BeamsMaker {
     return first;
   }
 
-  // Cones of radius r at a node, that grow by k per length away from it and whose axes meet at the angle
-  // theta, have left each other at the distance r / (sin(theta / 2) - k cos(theta / 2)).
+  //
   bool make_automatic_balls() {
     const std::vector<std::size_t> first = first_nodes();
-    std::vector<std::vector<Leaving>> leaving(shape_.nodes.size());
+    std::vector<std::vector<End>> ends(shape_.nodes.size());
     for (const Strut& s : shape_.struts) {
-      const Vec3 way = shape_.nodes[s.to].position - shape_.nodes[s.from].position;
-      const double length = norm(way), growth = (s.radius_to - s.radius_from) / length;
-      leaving[first[s.from]].push_back({way / length, s.radius_from, std::max(0.0, growth), s.from, s.to});
-      leaving[first[s.to]].push_back({-way / length, s.radius_to, std::max(0.0, -growth), s.to, s.from});
+      ends[first[s.from]].push_back({leaving_start(shape_, s), s.from, s.to});
+      ends[first[s.to]].push_back({leaving_end(shape_, s), s.to, s.from});
     }
-    for (std::size_t n = 0; n < leaving.size(); ++n) {
-      if (leaving[n].empty() || beams_.nodes[n].radius) continue;
-      double& radius = shape_.nodes[n].ball_radius;
-      std::vector<Vec3> beyond;
-      for (std::size_t m = n; m < first.size(); ++m)
-        if (first[m] == n) append_directions_beyond(m, beyond);
-      for (std::size_t i = 0; i < leaving[n].size(); ++i) {
-        const Leaving& strut = leaving[n][i];
-        radius = std::max(radius, strut.radius);
-        for (std::size_t j = 0; j < i; ++j) {
-          const Leaving& other = leaving[n][j];
-          const bool is_written_twice = strut.from == other.from && strut.to == other.to;
-          if (first[strut.to] == first[other.to] && !is_written_twice) continue;  // the mapping makes them one
-          const Leaving larger{strut.direction, std::max(strut.radius, other.radius),
-                               std::max(strut.widening, other.widening)};
-          if (!part_at(n, larger, other.direction, radius)) return false;
-        }
-        for (const Vec3& direction : beyond)
-          // A strut in a wall is the neighbour's, too.
-          if (norm(direction - strut.direction) / 2 >= smallest_sine && !part_at(n, strut, direction, radius))
-            return false;
-      }
+    for (std::size_t n = 0; n < ends.size(); ++n) {
+      if (ends[n].empty() || beams_.nodes[n].radius) continue;
+      if (!(is_on_pole(n) ? make_pole_ball(n) : make_automatic_ball(n, first, ends[n]))) return false;
     }
     for (std::size_t n = 0; n < first.size(); ++n)
       if (!beams_.nodes[n].radius) shape_.nodes[n].ball_radius = shape_.nodes[first[n]].ball_radius;
     return true;
   }
 
-  /// Raises `radius` to where a strut has left one that leaves its node along `direction`.
-  bool part_at(std::size_t node, const Leaving& strut, Vec3 direction, double& radius) const {
-    // |a - b| = 2 sin(theta / 2), |a + b| = 2 cos(theta / 2) for unit vectors, exact also for small angles.
-    const double sine = norm(strut.direction - direction) / 2, cosine = norm(strut.direction + direction) / 2;
-    const double opening = sine - strut.widening * cosine;
-    if (opening < smallest_sine) {
-      report_(Code::body_degenerate, {beams_.nodes[node].id_in_source, {}},
-              {sine < smallest_sine
-                   ? "two beams leave this node in the same direction, so nodeRadius=\"auto\" has no value"
-                   : "two beams grow thicker away from this node faster than they part, so nodeRadius=\"auto\" has no "
-                     "value"});
-      return false;
+  bool make_automatic_ball(std::size_t node, const std::vector<std::size_t>& first, const std::vector<End>& ends) {
+    double& radius = shape_.nodes[node].ball_radius;
+    std::vector<Vec3> beyond;
+    for (std::size_t m = node; m < first.size(); ++m)
+      if (first[m] == node) append_directions_beyond(m, beyond);
+    for (std::size_t i = 0; i < ends.size(); ++i) {
+      const auto& [strut, from, to] = ends[i];
+      radius = std::max(radius, strut.radius);
+      for (std::size_t j = 0; j < i; ++j) {
+        const bool is_written_twice = from == ends[j].from && to == ends[j].to;
+        if (first[to] == first[ends[j].to] && !is_written_twice) continue;  // the mapping makes them one
+        if (!is_fine(node, part(strut, ends[j].strut, radius))) return false;
+      }
+      for (const Vec3& direction : beyond)
+        // A strut in a wall is the neighbour's, too.
+        if (norm(direction - strut.direction) / 2 >= smallest_sine && !is_fine(node, part(strut, direction, radius)))
+          return false;
     }
-    radius = std::max(radius, strut.radius / opening);
     return true;
+  }
+
+  bool make_pole_ball(std::size_t node) {
+    const PoleBalls* poles = rules_.poles();
+    if (poles == nullptr) return false;
+    const PoleBalls::Ball ball = poles->at(shape_.nodes[node].position);
+    shape_.nodes[node].ball_radius = ball.radius;
+    return is_fine(node, ball.parting);
+  }
+
+  bool is_fine(std::size_t node, Parting parting) const {
+    if (parting == Parting::fine) return true;
+    report_(Code::body_degenerate, {beams_.nodes[node].id_in_source, {}},
+            {parting == Parting::same_direction
+                 ? "two beams leave this node in the same direction, so nodeRadius=\"auto\" has no value"
+                 : "two beams grow thicker away from this node faster than they part, so nodeRadius=\"auto\" has no "
+                   "value"});
+    return false;
   }
 
   /// Where the struts of neighbouring cells leave a node in a wall of the box, if those are like this one. Their radii
@@ -183,9 +203,6 @@ class BeamsMaker {
     }
   }
 
-  static constexpr double smallest_sine = 1e-6;
-  static constexpr double same_point = 1e-6;  ///< millimetres
-
   const EvaluationData& data_;
   const BodyTable& table_;
   const BeamsBody& beams_;
@@ -203,6 +220,11 @@ class BeamsMaker {
 std::optional<Shape> make_beams(const EvaluationData& data, const BodyTable& table, const BeamsBody& beams,
                                 std::span<const double> slots, const Report& report, const NodeRules& rules) {
   return BeamsMaker(data, table, beams, slots, report, rules).make();
+}
+
+bool append_pole_struts(const EvaluationData& data, const BodyTable& table, const BeamsBody& beams,
+                        std::span<const double> slots, const Report& report, const NodeRules& rules, PoleBalls& poles) {
+  return BeamsMaker(data, table, beams, slots, report, rules).append_pole_struts(poles);
 }
 
 }  // namespace meso::eval

@@ -34,6 +34,8 @@ class BodyTable {
   std::unordered_map<const void*, std::vector<BoundExpression>> bound_;
 };
 
+class PoleBalls;
+
 /// How a cell's nodes are placed, beyond what the slots say. Lengths in the document's unit.
 struct NodeRules {
   /// Where a node stands that the body puts at p; absent: there.
@@ -43,6 +45,8 @@ struct NodeRules {
   std::function<bool(Vec3 placed, std::vector<double>& slots)> slots{};
   /// The cell's box in millimetres: beyond each wall the struts of a neighbour like this cell go on.
   std::optional<BoxShape> period{};
+  /// The balls of nodes on poles; asked for if a node is on one. Null: something was reported.
+  std::function<const PoleBalls*()> poles{};
 };
 
 [[nodiscard]] std::optional<Shape> make_shape(const EvaluationData& data, const BodyTable& table,

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // The body of a placed cell.
+#include "beams.hpp"
 #include "cell_stream_impl.hpp"
 #include "conformal.hpp"
+#include "walker.hpp"
 
 namespace meso::eval {
 namespace {
@@ -70,6 +72,32 @@ NodeRules node_rules(const CellStream::Impl& impl, const PlacedCell& cell, const
   return rules;
 }
 
+void make_pole_balls(const CellStream::Impl& impl, LazyPoleBalls& out) {
+  DiagnosticSink sink;
+  const UnitCell& cell = *impl.program->cell;
+  PoleBalls poles;
+  const auto add = [&](const PlacedCell& placed) {
+    const Report report = report_at(impl, placed, sink);
+    const std::vector<double> slots = slots_of(*impl.program, placed);
+    const auto box = make_box(impl.data(), impl.body, *cell.box, slots, report);
+    return box && append_pole_struts(impl.data(), impl.body, std::get<BeamsBody>(cell.body), slots, report,
+                                     node_rules(impl, placed, slots, box, report), poles);
+  };
+  if (Walker(*impl.program, sink).visit(0, impl.size, add) && !sink.has_errors()) {
+    poles.measure();
+    out.balls = std::move(poles);
+  }
+  out.told = sink.diagnostics();
+}
+
+/// Null if they cannot be made, which is reported.
+const PoleBalls* pole_balls(const CellStream::Impl& impl, DiagnosticSink& sink) {
+  std::call_once(impl.poles.once, [&] { make_pole_balls(impl, impl.poles); });
+  if (impl.poles.balls) return &*impl.poles.balls;
+  for (const Diagnostic& d : impl.poles.told) sink.report(d);
+  return nullptr;
+}
+
 }  // namespace
 
 bool CellStream::shape_varies() const { return impl_->is_conformal() || !impl_->program->node_statements.empty(); }
@@ -106,8 +134,9 @@ std::optional<Shape> CellStream::shape(const PlacedCell& cell, DiagnosticSink& s
     box = make_box(impl_->data(), impl_->body, *program.cell->box, slots, report);
     if (!box) return std::nullopt;
   }
-  auto shape = make_shape(impl_->data(), impl_->body, *program.cell, slots, report,
-                          node_rules(*impl_, cell, slots, box, report));
+  NodeRules rules = node_rules(*impl_, cell, slots, box, report);
+  rules.poles = [&] { return pole_balls(*impl_, sink); };
+  auto shape = make_shape(impl_->data(), impl_->body, *program.cell, slots, report, rules);
   if (!shape || !impl_->is_conformal() || std::holds_alternative<BeamsShape>(shape->value)) return shape;
   return map_shape(impl_->frame_mm, cell, *box, *shape, report);
 }

@@ -182,6 +182,65 @@ TEST(Conformal, StraightBeamsRunBetweenMappedNodes) {
   expect_near(beams.nodes[1].position, {1.5, 3 * std::sin(std::numbers::pi / 3), 10});
 }
 
+const std::string ball_system =
+    "<coordinateSystems><coordinateSystem id='ball'><axis name='rho' kind='distance' x='1'/>"
+    "<axis name='phi' kind='circular' z='1'/><axis name='psi' kind='circular' y='-1'/></coordinateSystem>"
+    "</coordinateSystems>";
+
+/// So many sectors around a ball; a strut from the south pole to 15 degrees above it in the middle of each.
+std::string star(int cells, const std::string& statements) {
+  return pattern_text("<loop index='i' axis='rho' count='1' start='9' spacing='2'/><loop index='j' axis='phi' count='" +
+                          std::to_string(cells) + "' spacing='360deg/" + std::to_string(cells) +
+                          "'/><loop index='k' axis='psi' count='1' start='-90deg' spacing='30deg'/>" + statements,
+                      "<parameter id='r' value='0.1'/><box dx='1' dy='1' dz='1'/><beams radius='r' nodeRadius='auto'>"
+                      "<node id='a' x='0.5' y='0.5' z='0'/><node id='b' x='0.5' y='0.5' z='0.5'/><beam from='a' "
+                      "to='b'/></beams>",
+                      "mapping='conformal' coordinateSystem='ball'", ball_system);
+}
+
+/// Struts that rise by 7.5 degrees and are `degrees` apart around the pole.
+double star_ball(double radius, double degrees) {
+  const double to_rad = std::numbers::pi / 180;
+  return radius / (std::cos(7.5 * to_rad) * std::sin(degrees / 2 * to_rad));
+}
+
+double ball_of(const Shape& shape, std::size_t node) {
+  return std::get<BeamsShape>(shape.value).nodes.at(node).ball_radius;
+}
+
+TEST(Conformal, OnAPoleTheStrutsOfAllCellsMakeTheBall) {
+  for (const int cells : {3, 8, 9, 40}) {
+    const CellStream stream = stream_of(evaluation_of(star(cells, "")));
+    const double ball = star_ball(0.1, 360.0 / cells);
+    for (const int cell : {0, cells - 1}) {
+      EXPECT_NEAR(ball_of(shape_of(stream, static_cast<std::uint64_t>(cell)), 0), ball, 1e-12) << cells;
+      EXPECT_EQ(ball_of(shape_of(stream, static_cast<std::uint64_t>(cell)), 1), 0.1);
+    }
+  }
+}
+
+TEST(Conformal, CellsThatAreNotThereMakeNoBall) {
+  const CellStream stream = stream_of(evaluation_of(star(8, "<when test='j == 2 * floor(j / 2)'/>")));
+  EXPECT_NEAR(ball_of(shape_of(stream, 2), 0), star_ball(0.1, 90), 1e-12);
+}
+
+TEST(Conformal, TheThickestStrutsOfAPoleMakeItsBall) {
+  const CellStream stream = stream_of(evaluation_of(star(8, "<set parameter='r' value='0.1 + 0.01*j'/>")));
+  for (const std::uint64_t cell : {0, 5}) EXPECT_NEAR(ball_of(shape_of(stream, cell), 0), star_ball(0.17, 45), 1e-12);
+}
+
+TEST(Conformal, BeamsThatRunTogetherIntoAPoleAreTold) {
+  // Of two cells along the radius each has a beam outwards along the axis, from the same pole: one is longer.
+  EXPECT_THAT(faults_of(pattern_text("<loop index='i' axis='rho' count='1' start='9' spacing='2'/><loop index='j' "
+                                     "axis='phi' count='6' spacing='60deg'/><loop index='k' axis='psi' count='1' "
+                                     "start='-90deg' spacing='30deg'/><set parameter='x' value='0.5 + 0.1*j'/>",
+                                     "<parameter id='x' value='1'/><box dx='1' dy='1' dz='1'/><beams radius='0.1' "
+                                     "nodeRadius='auto'><node id='a' x='0' y='0.5' z='0'/><node id='b' x='x' y='0.5' "
+                                     "z='0'/><beam from='a' to='b'/></beams>",
+                                     "mapping='conformal' coordinateSystem='ball'", ball_system)),
+              ElementsAre("BODY_DEGENERATE in cell (0, 0, 0) of pattern 'p'"));
+}
+
 TEST(Conformal, OtherBodiesAreRefused) {
   EXPECT_THAT(faults_of(pattern_text(sectors, "<box dx='1' dy='1' dz='1'/><csg><sphere radius='1'/></csg>",
                                      "mapping='conformal' coordinateSystem='polar'", polar)),
