@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "elementary_faces.hpp"
 
+#include <Adaptor3d_CurveOnSurface.hxx>
+#include <BRep_CurveRepresentation.hxx>
+#include <BRep_TEdge.hxx>
+#include <Geom2dAdaptor_Curve.hxx>
+#include <Geom2d_Line.hxx>
 #include <Geom_SurfaceOfLinearExtrusion.hxx>
 #include <Geom_SurfaceOfRevolution.hxx>
 #include <TopTools_MapOfShape.hxx>
@@ -126,7 +131,12 @@ std::optional<Elementary> elementary(Handle(Geom_Surface) surface, const Window&
   else if (const auto extrusion = Handle(Geom_SurfaceOfLinearExtrusion)::DownCast(surface))
     found = of_extrusion(*extrusion);
   if (!found || !is_same(*surface, *found, w, tolerance)) return {};
-  found->shift.SetX(-turn * std::floor(w.u_min / turn + 1e-9));  // angles from 0
+  // Angles from 0.
+  const auto whole_turns = [](double from) { return turn * std::floor(from / turn + 1e-9); };
+  double v_shift = found->shift.Y();
+  if (!Handle(Geom_ToroidalSurface)::DownCast(found->surface).IsNull())
+    v_shift -= whole_turns(std::min(found->parameters(0, w.v_min).Y(), found->parameters(0, w.v_max).Y()));
+  found->shift = {-whole_turns(w.u_min), v_shift};
   return found;
 }
 
@@ -153,16 +163,60 @@ FaceCurves curves_of(const TopoDS_Edge& edge, const TopoDS_Face& face) {
   return out;
 }
 
+/// A line along one parameter that bends off by rounding is exactly so.
+Handle(Geom2d_Curve) straightened(const Handle(Geom2d_Curve) & curve, double first, double last) {
+  const auto line = Handle(Geom2d_Line)::DownCast(curve);
+  if (line.IsNull()) return curve;
+  const gp_Dir2d d = line->Direction();
+  const gp_Pnt2d middle = line->Value((first + last) / 2);
+  const bool along_u = std::fabs(d.Y()) * (last - first) < same_direction,
+             along_v = std::fabs(d.X()) * (last - first) < same_direction;
+  if (!along_u && !along_v) return curve;
+  const gp_Dir2d exact = along_u ? gp_Dir2d(d.X() < 0 ? -1 : 1, 0) : gp_Dir2d(0, d.Y() < 0 ? -1 : 1);
+  return new Geom2d_Line(middle.Translated(-(first + last) / 2 * gp_Vec2d(exact)), exact);
+}
+
+/// The line or circle that the edge is on the surface, if its own curve only comes near that.
+Handle(Geom_Curve) exact_curve(const TopoDS_Edge& edge, const FaceCurves& on, const Elementary& surface) {
+  if (BRep_Tool::Degenerated(edge)) return {};
+  TopLoc_Location unused;
+  double first = 0, last = 0;
+  const Handle(Geom_Curve) own = BRep_Tool::Curve(edge, unused, first, last);
+  if (own.IsNull() || Handle(Geom_BSplineCurve)::DownCast(own).IsNull() || first != on.first || last != on.last)
+    return {};
+  const Adaptor3d_CurveOnSurface curve(new Geom2dAdaptor_Curve(on.curves[0], first, last),
+                                       new GeomAdaptor_Surface(surface.surface));
+  Handle(Geom_Curve) exact;
+  if (curve.GetType() == GeomAbs_Circle) exact = new Geom_Circle(curve.Circle());
+  if (curve.GetType() == GeomAbs_Line) exact = new Geom_Line(curve.Line());
+  constexpr int steps = 16;
+  for (int i = 0; i <= steps && !exact.IsNull(); ++i) {
+    const double t = first + (last - first) * i / steps;
+    if (own->Value(t).Distance(exact->Value(t)) > 2 * BRep_Tool::Tolerance(edge)) exact.Nullify();
+  }
+  return exact;
+}
+
+bool is_of_one_face(const TopoDS_Edge& edge) {
+  int faces = 0;
+  for (const auto& curve : Handle(BRep_TEdge)::DownCast(edge.TShape())->Curves()) faces += curve->IsCurveOnSurface();
+  return faces == 1;
+}
+
 void put_on(const TopoDS_Edge& edge, FaceCurves from, const Elementary& to, const TopLoc_Location& location) {
   const BRep_Builder builder;
-  const double tolerance = BRep_Tool::Tolerance(edge);
   for (Handle(Geom2d_Curve) & curve : from.curves)
-    if (!curve.IsNull()) curve = Handle(Geom2d_Curve)::DownCast(curve->Transformed(to.motion()));
+    if (!curve.IsNull())
+      curve = straightened(Handle(Geom2d_Curve)::DownCast(curve->Transformed(to.motion())), from.first, from.last);
+  if (const auto exact = exact_curve(edge, from, to); !exact.IsNull()) {
+    builder.UpdateEdge(edge, exact, location, Precision::Confusion());
+    if (is_of_one_face(edge)) Handle(BRep_TEdge)::DownCast(edge.TShape())->Tolerance(Precision::Confusion());
+  }
   if (to.sign < 0) std::swap(from.curves[0], from.curves[from.closes ? 1 : 0]);  // loops are run backwards there
   if (from.closes)
-    builder.UpdateEdge(edge, from.curves[0], from.curves[1], to.surface, location, tolerance);
+    builder.UpdateEdge(edge, from.curves[0], from.curves[1], to.surface, location, BRep_Tool::Tolerance(edge));
   else
-    builder.UpdateEdge(edge, from.curves[0], to.surface, location, tolerance);
+    builder.UpdateEdge(edge, from.curves[0], to.surface, location, BRep_Tool::Tolerance(edge));
   builder.Range(edge, to.surface, location, from.first, from.last);
 }
 
