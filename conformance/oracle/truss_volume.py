@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Volumes of bent and grown trusses by the specification's text alone: nodes, radii, automatic balls, and a union of cones and balls.
 
-usage: truss_volume.py --meso PATH [--count 40] [--seed 1] [--kind NAME] [--keep FOLDER] [--seconds 60] [--late 2]
+usage: truss_volume.py --meso PATH [--count 40] [--seed 1] [--kind NAME] [--ball auto] [--keep FOLDER] [--seconds 60] [--late 2]
 
 Random documents of bent_parts.py. The volume of the union is the sum over all cones and balls of their volume times the
 mean of 1/m, m being how many of them hold a random point of it; `meso convert` must agree to 5 standard deviations. A
@@ -31,7 +31,7 @@ import bent_parts
 
 SAMPLES = 1500  # in each cone or ball
 ONE = 1e-6  # millimetres between points that are one
-TELLS_WHAT_TO_WRITE = {"GEOMETRY_STRUTS_THICK", "GEOMETRY_BEAMS_CLOSE", "BODY_DEGENERATE", "LIMIT_BOOLEANS"}
+TELLS_WHAT_TO_WRITE = {"GEOMETRY_STRUTS_THICK", "BODY_DEGENERATE", "LIMIT_BOOLEANS"}
 
 
 def unit(a, b):
@@ -220,7 +220,7 @@ def judged(a, kind, seed, folder):
     """(verdict, words)"""
     rng = random.Random(f"{kind}_truss {seed}")
     made = bent_parts.bent(rng) if kind == "bent" else bent_parts.straight(rng)
-    if made is None:
+    if made is None or (a.ball and made[3]["ball"] != a.ball):
         return "skipped", ""
     file = folder / f"{kind}_truss_{seed}.meso"
     file.write_text(made[0].replace("@VALIDATION@", ""), encoding="utf-8")
@@ -245,6 +245,7 @@ def main():
     parser.add_argument("--count", type=int, default=40, help="documents in all")
     parser.add_argument("--seed", type=int, default=1, help="of the first document")
     parser.add_argument("--kind", choices=("bent", "grown"), action="append")
+    parser.add_argument("--ball", help="only documents with this nodeRadius")
     parser.add_argument("--seconds", type=int, default=60, help="of a processor, for each document")
     parser.add_argument("--late", type=float, default=2, help="seconds of a processor that a refusal may take")
     parser.add_argument("--keep", help="a folder for the documents")

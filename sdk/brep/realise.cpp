@@ -163,8 +163,9 @@ class PartFold {
   /// Booleans of struts that fill their cells take minutes and fail. Half a cell is refused before anything is tried.
   bool struts_fit(const Thickness& thickness, double most, const Apply& apply) {
     if (thickness.ratio() <= most) return true;
-    context_.report(Code::geometry_struts_thick, apply.id_in_source,
-                    {format_number(thickness.radius), format_number(thickness.edge)});
+    context_.report(
+        Code::geometry_struts_thick, apply.id_in_source,
+        {"radius " + format_number(thickness.radius) + " mm in cells of " + format_number(thickness.edge) + " mm"});
     return false;
   }
 

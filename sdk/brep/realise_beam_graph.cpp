@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "beam_graph_body.hpp"
+#include "box_pairs.hpp"
 #include "meso/base/number.hpp"
 #include "meso/brep/measure.hpp"
 #include "solid_primitive.hpp"
@@ -14,20 +16,39 @@ namespace {
 
 const BeamsBody* beams_of(const eval::CellStream& cells) { return std::get_if<BeamsBody>(&cells.unit_cell().body); }
 
-struct SwallowedBeam {
-  double ball = 0, length = 0;
-};
-
-/// A beam that ends within the ball of its other node: struts leave that node so close together that they do not part
-/// on the way.
-std::optional<SwallowedBeam> swallowed_beam(const BeamGraph& graph) {
-  for (const BeamGraph::Strut& strut : graph.struts) {
-    const auto& [first, second] = strut.node;
-    const double length = norm(graph.nodes[second].position - graph.nodes[first].position);
-    const double ball = std::max(graph.nodes[first].radius, graph.nodes[second].radius);
-    if (ball > length && ball > 2 * std::max(strut.radius[0], strut.radius[1])) return SwallowedBeam{ball, length};
+/// What is told of an automatic ball that is larger than its struts ask for alone, because they leave their node close
+/// together, and that passes into another: of the one that reaches farthest. Empty if there is none.
+std::string crowded_node(const BeamGraph& graph) {
+  const auto& nodes = graph.nodes;
+  std::vector<double> thickest(nodes.size(), 0);
+  for (const BeamGraph::Strut& s : graph.struts)
+    for (const std::size_t end : {0u, 1u}) thickest[s.node[end]] = std::max(thickest[s.node[end]], s.radius[end]);
+  std::vector<Box3> boxes(nodes.size());
+  for (std::size_t n = 0; n < nodes.size(); ++n) {
+    const Vec3 r{nodes[n].radius, nodes[n].radius, nodes[n].radius};
+    boxes[n] = {nodes[n].position - r, nodes[n].position + r};
   }
-  return {};
+  double farthest = 0, away = 0;
+  std::size_t crowded = 0;
+  visit_meeting_pairs(boxes, [&](std::size_t i, std::size_t k) {
+    const double distance = norm(nodes[i].position - nodes[k].position);
+    if (nodes[i].radius + nodes[k].radius <= distance) return;
+    for (const std::size_t n : {i, k}) {
+      const double reach = nodes[n].radius / distance;
+      if (nodes[n].radius <= 2 * thickest[n] || !(reach > farthest)) continue;
+      farthest = reach;
+      away = distance;
+      crowded = n;
+    }
+  });
+  if (farthest == 0) return {};
+  const auto rounded = [](double x) { return format_number(std::nearbyint(x * 1e3) / 1e3); };
+  const auto& [position, ball] = nodes[crowded];
+  // r / sin(theta / 2), the beams of neighbouring cells counted that are not there.
+  const double angle = 2 * std::asin(thickest[crowded] / ball) * 180 / std::numbers::pi;
+  return "the automatic ball of the node at (" + rounded(position.x) + " " + rounded(position.y) + " " +
+         rounded(position.z) + "), which beams leave about " + rounded(angle) + " degrees apart, has a radius of " +
+         rounded(ball) + " mm, and passes into that of a node " + rounded(away) + " mm away";
 }
 
 }  // namespace
@@ -47,14 +68,12 @@ std::optional<BeamGraphPart> beam_graph_part(const eval::CellStream& cells, Elem
   std::string why;
   auto graph = beam_graph(cells, snapped, why, context);
   const std::uint64_t kept = graph ? graph->cells : 0;
-  const auto swallowed = graph && has_touching_circles(cells) ? swallowed_beam(*graph) : std::nullopt;
+  const std::string crowded = graph && has_touching_circles(cells) ? crowded_node(*graph) : "";
   const auto joints = graph ? joints_of(std::move(*graph), snapped, why) : std::nullopt;
   if (!joints) {
     if (!why.empty()) context.report(Code::geometry_struts_meet, where, {why});
     // Booleans of such balls take minutes and fail.
-    if (swallowed)
-      context.report(Code::geometry_struts_thick, where,
-                     {format_number(swallowed->ball), format_number(swallowed->length)});
+    if (!crowded.empty()) context.report(Code::geometry_struts_thick, where, {crowded});
     return {};
   }
   auto body = beam_graph_body(*joints, options, context.sink);

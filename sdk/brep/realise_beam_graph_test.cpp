@@ -251,6 +251,7 @@ TEST_F(BeamGraphTest, ATrussBendsIntoATube) {
 TEST_F(BeamGraphTest, StrutsThatDoNotPartBeforeTheirEndsAreRefusedAtOnce) {
   EXPECT_FALSE(realised(tube("auto", "0")));  // 24 cells meet in the axis
   EXPECT_EQ(sink_.diagnostics().back().code, Code::geometry_struts_thick);
+  EXPECT_NE(render(sink_.diagnostics().back()).find("degrees apart"), std::string::npos);
 }
 
 /// Sectors around the axis, from pole to pole or short of them; `bcc` in fractions of the sectors.
