@@ -148,6 +148,17 @@ class JointFinder {
     return least;
   }
 
+  /// What radius would part the struts of a node, if any does: two digits, rounded up.
+  [[nodiscard]] std::string larger_ball(std::uint32_t node) const {
+    const double ball = joints_.graph.nodes[node].radius;
+    for (double factor = 1.05; factor < 100; factor *= 1.05) {
+      if (gap_at(node, factor * ball) < 0) continue;
+      const double digit = std::pow(10, std::floor(std::log10(factor * ball)) - 1);
+      return ", one of " + format_number(std::ceil(factor * ball / digit) * digit) + " mm would hold them";
+    }
+    return {};
+  }
+
   bool settle_balls(bool& changed) {
     for (std::uint32_t n = 0; n < joints_.graph.nodes.size(); ++n) {
       double& ball = joints_.graph.nodes[n].radius;
@@ -155,7 +166,7 @@ class JointFinder {
       double low = ball, high = ball * (1 + equal_radii);
       if (changed || gap_at(n, high) < 0)
         return refuse("struts at the node " + place(at(n)) + " meet beyond its ball of radius " + format_number(ball) +
-                      " mm");
+                      " mm" + larger_ball(n));
       for (int i = 0; i < 60; ++i) {
         const double middle = (low + high) / 2;
         (gap_at(n, middle) < 0 ? low : high) = middle;
