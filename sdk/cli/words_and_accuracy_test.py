@@ -115,6 +115,20 @@ class WordsAsDocuments(Command):
             with self.subTest(words=words):
                 self.meso(2, "sdf", words, says=says)
 
+    def test_what_is_clamped_is_told(self):
+        says = "SDF_CLAMPED: '0.5 + x' goes from -0.5 to 1.5 in the box; at 48 % of it"
+        words = "tpms.gyroid density '0.5 + x' -b -1,-1,-1,1,1,1 -s 20^3"
+        self.meso(0, "sdf", f"{words} -o words.ply", says=says)
+        self.meso(0, "sdf", "tpms.gyroid tpms.d blend '2*x' -b 0,0,0,1,1,1 -s 20^3", says="SDF_CLAMPED")
+        done = subprocess.run([MESO, *shlex.split("sdf tpms.gyroid tpms.d blend 'clamp(2*x, 0, 1)' -s 20^3")],
+                              cwd=self.folder, capture_output=True, text=True, timeout=120)
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        if not HAS_CONVERT:
+            return
+        self.meso(0, "sdf", f"{words} -o part.meso")
+        self.meso(0, "convert", "part.meso part.ply", says=says)
+        self.assertEqual(self.bytes("part.ply"), self.bytes("words.ply"))
+
 
 def read_off(path):
     words = path.read_text().split()

@@ -22,6 +22,7 @@
 #include "meso/operations/macrostructure_distance.hpp"
 #include "meso/package/open_document.hpp"
 #include "meso/sdf/build_field.hpp"
+#include "meso/sdf/clamped_values.hpp"
 #include "meso/sdf/thinnest_wall.hpp"
 #include "meso/sdf_document/words_and_documents.hpp"
 #include "stopwatch.hpp"
@@ -49,6 +50,7 @@ struct Built {
   std::string names;  ///< of the parts
   double smallest_feature_mm = HUGE_VAL;
   brep::CellCounts cells;
+  std::optional<sdf::Program> words{};  ///< of a document that is words
 };
 
 /// A document that is words means what these mean, to the bit.
@@ -60,7 +62,8 @@ std::optional<Built> build_words(const sdf::Program& program, const std::string&
   const auto field = sdf::build_field(program, load, sink);
   if (!field) return std::nullopt;
   const auto wall = sdf::thinnest_wall(program);
-  return Built{.field = *field, .names = part, .smallest_feature_mm = wall ? wall->thickness : HUGE_VAL};
+  return Built{
+      .field = *field, .names = part, .smallest_feature_mm = wall ? wall->thickness : HUGE_VAL, .words = program};
 }
 
 std::optional<Built> build(const eval::Evaluation& evaluation, const MakeOptions& options, DiagnosticSink& sink) {
@@ -89,6 +92,14 @@ std::optional<Built> build(const eval::Evaluation& evaluation, const MakeOptions
     all->cells.kept += part->cells_kept;
   }
   return all;
+}
+
+/// Shares beyond 0 and 1. A weight's clamp() stands in the document.
+void warn_of_clamped(const Built& built, const Box3& box, DiagnosticSink& sink) {
+  if (!built.words) return;
+  std::vector<sdf::Clamped> clamped = sdf::clamped_values(*built.words, box);
+  std::erase_if(clamped, [](const sdf::Clamped& c) { return c.made_by->verb != sdf::Verb::density; });
+  sdf::report_clamped(clamped, sink);
 }
 
 /// Streams from the grid; or, from a tolerance or simplified, by way of a mesh in memory. Tells the report.
@@ -189,6 +200,7 @@ std::optional<ConvertReport> make_mesh(const eval::Evaluation& evaluation, const
   report.seconds.realise = watch.lap();
   if (!write_mesh_file(*built, *grid, out, options, write, report, sink)) return std::nullopt;
   report.seconds.write = watch.lap();
+  warn_of_clamped(*built, grid->box, sink);
   report.seconds.total = watch.total();
   return report;
 }

@@ -21,6 +21,7 @@
 #include "meso/import_surface_mesh/read_surface_mesh.hpp"
 #include "meso/mesh_distance/mesh_field.hpp"
 #include "meso/sdf/build_field.hpp"
+#include "meso/sdf/clamped_values.hpp"
 #include "meso/sdf/thinnest_wall.hpp"
 #include "stopwatch.hpp"
 
@@ -226,6 +227,7 @@ bool Job::extrapolate() {
 void Job::warn(const Output& output) const {
   if (report_.triangles == 0) sink_.report({.code = Code::sdf_empty, .args = {program_.output}});
   const bool rounded = warn_of_rounding(output);
+  sdf::report_clamped(sdf::clamped_values(program_, report_.grid.box), sink_);
   const double spacing = largest_spacing(report_.grid);
   if (const double feature = smallest_feature(); feature > 0 && feature < options_.tolerance) {
     sink_.report({.code = Code::feature_below_tolerance,

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "meso/sdf/build_field.hpp"
 
-#include <array>
 #include <cmath>
 #include <map>
 #include <numbers>
@@ -11,6 +10,7 @@
 #include "meso/implicit/density_table.hpp"
 #include "meso/implicit/surfaces.hpp"
 #include "meso/sdf/solid_tree.hpp"
+#include "place_of_solid.hpp"
 #include "strut_cells.hpp"
 
 namespace meso::sdf {
@@ -26,33 +26,6 @@ struct Solid {
   Field field;
   Vec3 period{};
 };
-
-Term fraction_of_turn(const Term& y, const Term& x, double units) {
-  return (units / (2 * std::numbers::pi)) * Term::apply(Op::atan2, {y, x});
-}
-
-/// Where the solid's point stands that is seen at (x, y, z).
-std::array<Term, 3> bent(const Instruction& instruction) {
-  const auto& n = instruction.numbers;
-  const Term x = Term::coordinate(0), y = Term::coordinate(1), z = Term::coordinate(2);
-  const Term around_axis = x * x + y * y;
-  switch (instruction.verb) {
-    case Verb::cylindrical:
-      return {sqrt(around_axis), fraction_of_turn(y, x, n[0]), z};
-    case Verb::helix:
-      return {sqrt(around_axis), fraction_of_turn(y, x, n[0]), z - fraction_of_turn(y, x, n[1])};
-    case Verb::spherical:
-      // Half a turn from pole to pole.
-      return {sqrt(around_axis + z * z), fraction_of_turn(y, x, n[0]),
-              fraction_of_turn(sqrt(around_axis), z, 2 * n[1])};
-    default:
-      break;
-  }
-  std::array<Term, 3> folded{x, y, z};
-  for (std::size_t a = 0; a < 3; ++a)
-    if (n[a] > 0) folded[a] = folded[a] - n[a] * Term::apply(Op::floor, {(1 / n[a]) * folded[a] + 0.5});
-  return folded;
-}
 
 class Builder {
  public:

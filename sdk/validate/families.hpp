@@ -82,6 +82,13 @@ void check_beams(Context& c, const BeamsBody& body, const Scope& scope);
                                                    const Element& element, std::string_view attribute,
                                                    const Name& name);
 
+/// a number with a unit that does not suit what is counted along an axis; null: along a direction.
+void check_axis_unit(Context& c, const Element& element, std::string_view attribute,
+                     const std::optional<Expression>& value, const Axis* axis);
+/// The same of a list whose items belong to the axes in order, all others to the last. REQUIRES: an axis.
+void check_axis_units(Context& c, const Element& element, std::string_view attribute, const ExpressionList& values,
+                      std::span<const Axis> axes);
+
 /// The names under which expressions know the components of a field and what follows from them (without the field's
 /// id).
 [[nodiscard]] std::vector<std::string> component_names(const VectorField& field);
