@@ -49,6 +49,7 @@ class WordsAsDocuments(Command):
         "tpms.p shell 0.6 spherical 12,6 ball scale 2.9 intersection half-space 1,-1,0,0 intersection -s 30^3",
         "tpms.p shell 0.8 helix 8,3 cylinder scale 2.9 intersection cylinder scale 0.9 difference -b -3,-3,0,3,3,4 -s 30^3",
         "tpms.d helix 3,-1 rotate 1,1,0 0.5 cylindrical -7 shell 0.4 box ball move 1,0,0 union spherical -3,2 union -b -2,-2,-2,2,2,2 -s 24^3",
+        "cylinder scale 0.3 orient 0,1,0 move 1.2,0,0 repeat 0,0,1 helix 1,1 -b -2,-2,0,2,2,4 -s 30^3",
         "tpms.gyroid tpms.d blend '(x + 1)/2' -s 20^3",
     ]
 

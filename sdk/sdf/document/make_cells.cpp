@@ -128,6 +128,8 @@ std::optional<std::string> DocumentMaker::field_text(Index node, UnitCell& cell)
 bool DocumentMaker::add_blends(Index node, UnitCell& cell, ImplicitBody& body) {
   const Instruction& at = word(node);
   if (at.verb != Verb::blend) {
+    if (!tree_.nodes[node].of.empty())
+      return fault(node, "a blend in a document is of surfaces and expressions"), false;
     const auto field = field_text(node, cell);
     if (field) body.field = Expression{*field};
     return field.has_value();

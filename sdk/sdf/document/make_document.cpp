@@ -197,15 +197,16 @@ std::optional<Operand> DocumentMaker::moved(Index node, const Box3& region) {
 std::optional<Operand> DocumentMaker::repeated(Index node, const Box3& region) {
   const auto& n = word(node).numbers;
   const std::string id = name(node);
-  Box3 once = with_room(region);
+  const Box3 roomy = with_room(region);
+  Box3 once, shifted = region;  // cells begin half a step before the origin
   std::array<Expression, 3> steps;
   for (std::size_t a = 0; a < 3; ++a) {
-    if (!(n[a] > 0)) return fault(node, "a pattern of cells repeats them along all three axes");
-    once.min[a] = -n[a] / 2, once.max[a] = n[a] / 2;
-    steps[a] = number(id + "XYZ"[a], n[a]);
+    const bool repeats = n[a] > 0;
+    const double half = repeats ? n[a] / 2 : std::max(std::abs(roomy.min[a]), std::abs(roomy.max[a]));
+    once.min[a] = -half, once.max[a] = half;
+    shifted.max[a] += half;
+    steps[a] = repeats ? number(id + "XYZ"[a], n[a]) : Expression{format_number(2 * half)};
   }
-  // Cells begin half a step before the origin.
-  const Box3 shifted{region.min, region.max + 0.5 * Vec3{n[0], n[1], n[2]}};
   const auto inner = operand(below(node), once);
   if (!inner) return std::nullopt;
   UnitCell cell{.id = {id}, .clip_to_box = true, .body = PartBody{.part = {*part_of(*inner, inner->id + "Part")}}};
@@ -213,6 +214,8 @@ std::optional<Operand> DocumentMaker::repeated(Index node, const Box3& region) {
   cell.box = CellBox{.x = half(0), .y = half(1), .z = half(2), .dx = steps[0], .dy = steps[1], .dz = steps[2]};
   Pattern pattern;
   fill(pattern, shifted, steps);
+  for (std::size_t a = 0; a < 3; ++a)  // one cell that holds the region
+    if (!(n[a] > 0)) pattern.fill->ranges[a].from = {"0"}, pattern.fill->ranges[a].to = steps[a];
   return add_pattern(std::move(cell), std::move(pattern), id);
 }
 

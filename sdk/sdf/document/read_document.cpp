@@ -74,6 +74,11 @@ class DocumentReader {
   }
   /// Cells of this size side by side over the region.
   bool fills(const Pattern& pattern, const Box3& region, Vec3 size);
+  /// The first and one after the last of a range's whole numbers.
+  std::pair<double, double> counts(const FillRange& range) {
+    const double step = value(range.step);
+    return {std::ceil(value(range.from) / step - whole), std::floor(value(range.to) / step + whole)};
+  }
   /// A number, or a formula of the words' x, y, z.
   struct Level {
     double number = 0;
@@ -272,7 +277,7 @@ bool DocumentReader::fills(const Pattern& pattern, const Box3& region, Vec3 size
     if (range.axis.text.size() != 1 || axis > 2) return no("cells along axes of a system");
     const double step = value(range.step);
     if (step != size[axis]) return no("cells that do not touch");
-    const double first = std::ceil(value(range.from) / step - whole), last = std::floor(value(range.to) / step + whole);
+    const auto [first, last] = counts(range);
     if (!(first * step <= region.min[axis] && last * step >= region.max[axis]))
       return no("cells that do not fill the bounds; words repeat without end");
   }
@@ -368,7 +373,11 @@ bool DocumentReader::repeated_part(const UnitCell& cell, const PartBody& body, c
   const Box3 shifted{region.min + 0.5 * size, region.max + 0.5 * size};
   if (!fills(pattern, shifted, size) || !part(*evaluation_.find_part(body.part.text), {-0.5 * size, 0.5 * size}))
     return false;
-  push(Verb::repeat, {size.x, size.y, size.z});
+  Vec3 steps = size;  // none where one cell holds the region
+  for (const FillRange& range : pattern.fill->ranges)
+    if (const auto [first, last] = counts(range); last - first == 1)
+      steps[static_cast<std::size_t>(range.axis.text[0] - 'x')] = 0;
+  if (!(steps == Vec3{})) push(Verb::repeat, {steps.x, steps.y, steps.z});
   return true;
 }
 

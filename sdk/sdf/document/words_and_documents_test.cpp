@@ -97,6 +97,8 @@ const char* const designs[] = {
     "ball box move 0.5,0.5,0.5 union mirror 1,1,0",
     "cone 1,0,2 tpms.p union scale -1,1,2",
     "ball scale 0.3 repeat 1,0.8,0.7 box intersection",
+    "ball scale 0.4 move 0.1,0,0.3 repeat 1,0,1",
+    "cylinder scale 0.3 orient 0,1,0 move 1.2,0,0 repeat 0,0,1 helix 1,1 -b -2,-2,0,2,2,4",
     "strut.bcc 0.08",
     "strut.octet 0.05 scale 2.5 ball scale 3 intersection",
     "tpms.gyroid shell 0.3 cylindrical 12",
@@ -183,7 +185,7 @@ TEST(WordsAndDocuments, WhatADocumentCannotSayIsNamed) {
       {"cone 1,0,1 offset 0.1 cylindrical 8", "cone"}, {"ball box union spherical 8,4 shell 0.1", "shell"},
       {"ball box union shell 0.1", "shell"},           {"tpms.gyroid shell 0.1 shell 0.05", "shell"},
       {"tpms.gyroid offset 0.1 offset 0.1", "offset"}, {"cone 1,0,1 offset 0.1", "cone"},
-      {"strut.bcc 0.1 offset 0.1", "offset"},          {"ball repeat 1,0,1", "repeat"},
+      {"strut.bcc 0.1 offset 0.1", "offset"},          {"tpms.gyroid cylindrical 8 tpms.p blend x", "cylindrical"},
       {"ball scale 1,2,3 shell 0.1", "scale"},
   };
   for (const auto& [design, word] : cases) {
