@@ -94,6 +94,7 @@ class Making {
   };
   static constexpr double look_near = 0.27, few = 2e-3, few_astray = 5e-3;
   Look look_at(const TriangleMesh& mesh, double spacing);
+  [[nodiscard]] static double farthest_on(const Grid& grid);
   bool resolve(Grid grid);
   bool refine();
   bool simplify();
@@ -171,10 +172,13 @@ bool Making::is_affordable(const Grid& coarse) {
   MemoryMeshSink sink(mesh);
   if (!contour(*source, sink, {}, run_, diagnostics_)) return false;
   std::vector<PointNearSurface> middles;
+  std::vector<double> halves;  // of the edges: their ends are on the surface
   const std::size_t step = mesh.triangles.size() / asked + 1;
   for (std::size_t t = 0; t < mesh.triangles.size(); t += step) {
     const Vec3 a = mesh.points[mesh.triangles[t][0]], b = mesh.points[mesh.triangles[t][1]];
-    if (planes_of(coarse.box, a) == 0 && planes_of(coarse.box, b) == 0) middles.push_back({(a + b) / 2, 0, 0});
+    if (planes_of(coarse.box, a) != 0 || planes_of(coarse.box, b) != 0) continue;
+    middles.push_back({(a + b) / 2, 0, 0});
+    halves.push_back(norm(a - b) / 2);
   }
   if (middles.empty()) return true;
   SurfaceFeet feet(*source, not_stopped());
@@ -182,7 +186,8 @@ bool Making::is_affordable(const Grid& coarse) {
   feet.distances(middles, 0.01 * largest_spacing(coarse), distances);
   if (!go_on()) return false;
   double times = 0;
-  for (const double d : distances) times += std::max(1.0, d / options_.tolerance);
+  for (std::size_t i = 0; i < distances.size(); ++i)
+    times += std::max(1.0, std::min(distances[i], halves[i]) / options_.tolerance);
   const double triangles = times / static_cast<double>(middles.size()) * static_cast<double>(mesh.triangles.size());
   return triangles * static_cast<double>(RefinableMesh::bytes_per_triangle) <=
              unsure * static_cast<double>(run_.max_memory_bytes) ||
@@ -228,6 +233,11 @@ Making::Look Making::look_at(const TriangleMesh& mesh, double spacing) {
   return look;
 }
 
+// A triangle lies in a cell that the surface crosses, but for vertices on sharp edges, which may leave it by as much.
+double Making::farthest_on(const Grid& grid) {
+  return 2 * norm(Vec3{grid.spacing(0), grid.spacing(1), grid.spacing(2)});
+}
+
 // The coarsest of grids on which few triangles go astray and few edges are farther from the surface than
 // a quarter of a cell: where a mesh is that close, it turns where the surface turns. Distances in cells go with the
 // spacing, which tells how fine the next one must be.
@@ -241,6 +251,7 @@ bool Making::resolve(Grid grid) {
       grid = with_spacing(grid.box, spacing / 2);
       continue;
     }
+    if (farthest_on(grid) <= options_.tolerance) return go_on();
     const Look look = look_at(out_.mesh, spacing);
     if (!go_on()) return false;
     const bool follows = look.astray <= few_astray;
@@ -286,7 +297,12 @@ bool Making::to_tolerance(const Grid& first) {
   const double spacing =
       options_.smallest_feature > 0 ? std::min(options_.smallest_feature, longest / 16) : longest / 32;
   if (!is_affordable(with_spacing(first.box, longest / 16))) return false;
-  if (!resolve(with_spacing(first.box, spacing)) || !refine()) return false;
+  if (!resolve(with_spacing(first.box, spacing))) return false;
+  if (!refinable_) {
+    out_.distance = farthest_on(out_.grid);
+    return true;
+  }
+  if (!refine()) return false;
   out_.distance = refinable_->distance();
   if (out_.distance > options_.tolerance)
     diagnostics_.report({.code = Code::tolerance_not_reached,

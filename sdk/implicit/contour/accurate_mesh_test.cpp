@@ -78,6 +78,24 @@ TEST(AccurateMesh, KeepsEdgesWhileItRefines) {
   EXPECT_LE(farthest(result.mesh, [](Vec3 p) { return std::fabs(drilled(p)); }), 1.5e-4);
 }
 
+TEST(AccurateMesh, TakesTheGridsWordWhereTwoCellsAreWithinTheTolerance) {
+  const AccurateMesh result = made(drilled, {.box = cube()}, {.tolerance = 0.5});
+  EXPECT_TRUE(audit_mesh(result.mesh).watertight());
+  EXPECT_DOUBLE_EQ(result.distance, 2 * std::sqrt(3) * result.grid.spacing(0));
+  EXPECT_LE(result.distance, 0.5);
+  EXPECT_LE(farthest(result.mesh, [](Vec3 p) { return std::fabs(drilled(p)); }), result.distance);
+}
+
+/// A lattice's values end at its reach: over a slope of nearly nothing they say that the surface is miles away.
+TEST(AccurateMesh, TellsNoDistanceBeyondTheMesh) {
+  const auto flat = [](Vec3 p) { return std::max(drilled(p), -0.02 + 1e-6 * p.x); };
+  DiagnosticSink diagnostics;
+  const auto result = make_accurate_mesh(on(flat), {.box = cube()}, {.tolerance = 5e-3}, {}, diagnostics);
+  ASSERT_TRUE(result);
+  EXPECT_TRUE(audit_mesh(result->mesh).watertight());
+  EXPECT_LE(result->distance, 0.25);
+}
+
 double gyroid(Vec3 p, double cell) {
   const double t = 2 * pi / cell;
   return std::cos(t * p.x) * std::sin(t * p.y) + std::cos(t * p.y) * std::sin(t * p.z) +

@@ -26,13 +26,15 @@ RefinableMesh::RefinableMesh(TriangleMesh mesh, const Box3& box, SurfaceFeet& fe
     : mesh_(std::move(mesh)), box_(box), feet_(feet), smooth_(smooth), known_(mesh_.triangles.size()) {
   feet_.slopes(mesh_.points, gradients_, values_);
   for (const Vec3& p : mesh_.points) planes_.push_back(planes_of(box_, p));
-  // Points that have triangles in the box's sides only are where they belong.
+  // Points that have triangles in the box's sides only are where they belong. The others are in a cell that the surface
+  // crosses, or beside it: a flat field tells of more.
+  const double most = 2 * feet_.cell();
   distances_.assign(mesh_.points.size(), 0);
   for (std::uint32_t t = 0; t < known_.size(); ++t) {
     if (plane_of_triangle(t) != 0) continue;
     for (const std::uint32_t p : mesh_.triangles[t]) {
       const double distance = std::fabs(values_[p]) / norm(within(planes_[p], gradients_[p]));
-      distances_[p] = static_cast<float>(std::isfinite(distance) ? distance : 0);
+      distances_[p] = static_cast<float>(std::isfinite(distance) ? std::min(distance, most) : 0);
     }
   }
 }
@@ -181,7 +183,11 @@ void RefinableMesh::measure_edges(double tolerance) {
   look_ahead(rays, tolerance, distances);
   for (std::size_t i = 0; i < distances.size(); ++i) {
     auto& [edge, bend] = first_of_asked[i];
-    bend.middle = distances[i];
+    const Edge& e = edges[edge];
+    // No farther than the ends are, and half of the way to them.
+    const double most = norm(mesh_.points[e.a] - mesh_.points[e.b]) / 2 +
+                        static_cast<double>(std::max(distances_[e.a], distances_[e.b]));
+    bend.middle = std::clamp(distances[i], -most, most);
     know(edge, bend.farthest());
   }
 }

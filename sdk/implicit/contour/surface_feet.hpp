@@ -55,6 +55,9 @@ class SurfaceFeet {
   /// Slopes by differences, of a hundred-thousandth of a cell.
   void slopes(std::span<const Vec3> points, std::vector<Vec3>& out, std::vector<double>& values);
 
+  /// How far the corners of a cell are apart.
+  [[nodiscard]] double cell() const { return norm(Vec3{grid_.spacing(0), grid_.spacing(1), grid_.spacing(2)}); }
+
  private:
   void ask(std::span<const Vec3> points, std::vector<double>& out);
 

@@ -243,13 +243,11 @@ class Rows final : public ExternalRows {
       lows_[f] = value - change - slack;
       most = std::min(most, value + change + slack);
     }
-    local_.resize(near_.size());
     values_.resize(near_.size());
     for (std::size_t f = 0; f < fields.size(); ++f) {
       if (lows_[f] > most) continue;
-      for (std::size_t n = 0; n < near_.size(); ++n) local_[n] = fields[f].local_from_world * near_[n];
-      fields[f].field->values(local_, values_);
-      for (std::size_t n = 0; n < near_.size(); ++n) out[n] = std::min(out[n], fields[f].factor * values_[n]);
+      fields[f].values(near_, local_, values_.data());
+      for (std::size_t n = 0; n < near_.size(); ++n) out[n] = std::min(out[n], values_[n]);
     }
   }
 
@@ -260,9 +258,9 @@ class Rows final : public ExternalRows {
     for (const PlacedField& field : layer.fields(brick)) {
       std::array<Vec3, side> points;
       std::array<double, side> values;
-      for (std::size_t i = 0; i < side; ++i) points[i] = field.local_from_world * (line.origin + x[i] * line.direction);
-      field.field->values(points, values);
-      for (std::size_t i = 0; i < side; ++i) out[i] = std::min(out[i], field.factor * values[i]);
+      for (std::size_t i = 0; i < side; ++i) points[i] = line.origin + x[i] * line.direction;
+      field.values(points, local_, values.data());
+      for (std::size_t i = 0; i < side; ++i) out[i] = std::min(out[i], values[i]);
     }
   }
 

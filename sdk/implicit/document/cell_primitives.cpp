@@ -31,6 +31,21 @@ void add_capsule(Vec3 from, Vec3 to, double radius, std::vector<Primitive>& into
   into.push_back(std::move(p));
 }
 
+void add_cone(Vec3 from, Vec3 to, const Cone& cone, std::vector<Primitive>& into) {
+  const std::size_t count = into.size();
+  const Field upright = Field::cone(cone.bottom, cone.top, cone.height);
+  add_field(upright, into);
+  if (into.size() == count) return;
+  const Vec3 z = (to - from) / norm(to - from), aside = std::abs(z.x) < 0.6 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
+  const Vec3 y = cross(z, aside) / norm(cross(z, aside));
+  const Affine map{Mat3::from_columns(cross(y, z), y, z), from};
+  Primitive& p = into.back();
+  p.placed.cone = cone;
+  p.placed.grown = seam;
+  p.placed.local_from_world = inverse(map);
+  p.box = upright.oriented(to - from).translated(from).bounds(seam);
+}
+
 /// A strut's end: the half of a ball beyond the disc.
 Field hemisphere(Vec3 end, Vec3 outwards, double radius) {
   return intersection_of(Field::ball(radius), Field::half_space(-outwards)).translated(end);
@@ -76,11 +91,15 @@ void CellPrimitives::add_beams(const eval::BeamsShape& beams, std::vector<Primit
       add_capsule(from, to, s.radius_from, into);
       continue;
     }
-    Field strut = Field::cone(s.radius_from, s.radius_to, length).oriented(to - from).translated(from);
-    const Vec3 along = (to - from) / length;
-    if (s.cap_from == BeamCap::hemisphere) strut = joined(strut, hemisphere(from, -along, s.radius_from));
-    if (s.cap_to == BeamCap::hemisphere) strut = joined(strut, hemisphere(to, along, s.radius_to));
-    add_field(strut, into);
+    if (s.cap_from == BeamCap::hemisphere || s.cap_to == BeamCap::hemisphere) {
+      const Vec3 along = (to - from) / length;
+      Field strut = Field::cone(s.radius_from, s.radius_to, length).oriented(to - from).translated(from);
+      if (s.cap_from == BeamCap::hemisphere) strut = joined(strut, hemisphere(from, -along, s.radius_from));
+      if (s.cap_to == BeamCap::hemisphere) strut = joined(strut, hemisphere(to, along, s.radius_to));
+      add_field(strut, into);
+    } else {
+      add_cone(from, to, {s.radius_from, s.radius_to, length}, into);
+    }
     if (s.cap_from == BeamCap::sphere) add_capsule(from, from, s.radius_from, into);
     if (s.cap_to == BeamCap::sphere) add_capsule(to, to, s.radius_to, into);
   }

@@ -67,6 +67,17 @@ TEST(PlacedCells, ValuesAreThoseOfAllPrimitives) {
   }
 }
 
+TEST(PlacedCells, AConesFormulaIsItsField) {
+  Numbers number;
+  for (const Cone& cone : {Cone{0.7, 0.3, 1.2}, Cone{0.2, 0.9, 0.4}, Cone{0.5, 0.5, 2}, Cone{0.6, 0, 1}}) {
+    const Field field = Field::cone(cone.bottom, cone.top, cone.height);
+    for (int i = 0; i < 2000; ++i) {
+      const Vec3 p = number.point(2);
+      EXPECT_NEAR(distance(cone, p), field.value(p), 1e-14);
+    }
+  }
+}
+
 TEST(PlacedCells, ARepetitionIsItsCopies) {
   Numbers number;
   const auto one = some_primitives(number, 20, 1);

@@ -32,17 +32,41 @@ class Quantity final : public PointFunction {
   Box3 region_;
 };
 
+/// Many points walk to the surface side by side: a formula costs a fraction for many points of what it costs for one.
 class LevelDistance final : public PointFunction {
  public:
   LevelDistance(const Term& f, double step, double reach) : f_(f), step_(step), reach_(reach) {}
 
   void values(std::span<const Vec3> points, double* out) const override { values_within(points, HUGE_VAL, out); }
   void values_within(std::span<const Vec3> points, double within, double* out) const override {
-    std::vector<double> f(points.size());
-    f_.values(points, f);
+    f_.values(points, {out, points.size()});
+    if (within == 0) return;  // only signs are asked for
     const double asked = std::min(within, reach_);
+    std::vector<Walk> open, still_open;
     for (std::size_t n = 0; n < points.size(); ++n)
-      out[n] = std::isnan(f[n]) ? f[n] : std::copysign(distance(points[n], f[n], asked), f[n]);
+      if (out[n] != 0 && !std::isnan(out[n])) open.push_back({n, points[n], out[n]});
+    for (int i = 0; i < most_steps && !open.empty(); ++i) {
+      const std::vector<Vec3> slopes = slopes_at(open);
+      still_open.clear();
+      for (std::size_t k = 0; k < open.size(); ++k) {
+        Walk& walk = open[k];
+        const Vec3 p = points[walk.n], slope = slopes[k];
+        const double square = dot(slope, slope), steepness = std::sqrt(square);
+        double distance = norm(p - walk.q);
+        if (!(square > 0) || !std::isfinite(square)) {
+          if (i == 0) distance = 4 * reach_;
+        } else if (i == 0 && std::abs(walk.f) > 4 * asked * steepness) {
+          // The surface is four times as far as anybody asks: what the slope says.
+          distance = std::abs(walk.f) / steepness;
+        } else {
+          if (go(walk, p, slope)) still_open.push_back(walk);
+          distance = norm(p - walk.q);
+        }
+        out[walk.n] = std::copysign(distance, out[walk.n]);
+      }
+      open.swap(still_open);
+      ask(open);
+    }
   }
   [[nodiscard]] Interval interval(const Box3& box) const override {
     const Interval f = f_.interval(box);
@@ -50,24 +74,46 @@ class LevelDistance final : public PointFunction {
   }
 
  private:
-  /// Where the slope at p says that the surface is four times as far as anybody asks, what the slope says.
-  [[nodiscard]] double distance(Vec3 p, double f, double asked) const {
-    Vec3 q = p;
-    for (int i = 0; i < most_steps && f != 0; ++i) {
-      const Vec3 slope = f_.gradient(q);
-      const double square = dot(slope, slope);
-      if (!(square > 0) || !std::isfinite(square)) return i == 0 ? 4 * reach_ : norm(p - q);
-      if (i == 0 && std::abs(f) > 4 * asked * std::sqrt(square)) return std::abs(f) / std::sqrt(square);
-      // Down to the surface, and along it towards the point below p.
-      Vec3 move = (-f / square) * slope;
-      const Vec3 way = p - q;
-      move = move + (way - (dot(way, slope) / square) * slope);
-      const double length = norm(move);
-      q = q + (length > step_ ? step_ / length : 1) * move;
-      if (length <= 1e-6 * step_) break;
-      f = f_.value(q);
+  struct Walk {
+    std::size_t n;  ///< of the point
+    Vec3 q;
+    double f;
+  };
+
+  /// Down to the surface, and along it towards the point below p. False where that was the last step.
+  [[nodiscard]] bool go(Walk& walk, Vec3 p, Vec3 slope) const {
+    const double square = dot(slope, slope);
+    const Vec3 way = p - walk.q;
+    const Vec3 down = (-walk.f / square) * slope, along = way - (dot(way, slope) / square) * slope;
+    const Vec3 move = down + along;
+    const double length = norm(move);
+    walk.q = walk.q + (length > step_ ? step_ / length : 1) * move;
+    // What is left of the way along the surface counts with its square.
+    return norm(down) > 1e-6 * step_ || dot(along, along) > 2e-6 * step_ * norm(p - walk.q);
+  }
+  [[nodiscard]] std::vector<Vec3> slopes_at(std::span<const Walk> walks) const {
+    const double h = 1e-6 * step_;
+    std::vector<Vec3> points, slopes;
+    for (const Walk& w : walks)
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        points.push_back(w.q);
+        points.back()[axis] += h;
+      }
+    std::vector<double> f(points.size());
+    f_.values(points, f);
+    for (std::size_t k = 0; k < walks.size(); ++k) {
+      slopes.emplace_back();
+      for (std::size_t axis = 0; axis < 3; ++axis)
+        slopes.back()[axis] = (f[3 * k + axis] - walks[k].f) / (points[3 * k + axis][axis] - walks[k].q[axis]);
     }
-    return norm(p - q);
+    return slopes;
+  }
+  void ask(std::span<Walk> walks) const {
+    std::vector<Vec3> points;
+    for (const Walk& w : walks) points.push_back(w.q);
+    std::vector<double> f(points.size());
+    f_.values(points, f);
+    for (std::size_t k = 0; k < walks.size(); ++k) walks[k].f = f[k];
   }
 
   static constexpr int most_steps = 12;
