@@ -151,10 +151,12 @@ class JointFinder {
   /// What radius would part the struts of a node, if any does: two digits, rounded up.
   [[nodiscard]] std::string larger_ball(std::uint32_t node) const {
     const double ball = joints_.graph.nodes[node].radius;
+    // Where balls meet, too, a larger one meets more.
+    if (std::ranges::any_of(joints_.leaving[node], [&](Leaving l) { return joints_.is_swallowed[l / 2]; })) return {};
     for (double factor = 1.05; factor < 100; factor *= 1.05) {
       if (gap_at(node, factor * ball) < 0) continue;
-      const double digit = std::pow(10, std::floor(std::log10(factor * ball)) - 1);
-      return ", one of " + format_number(std::ceil(factor * ball / digit) * digit) + " mm would hold them";
+      const double digits = std::pow(10, 1 - std::floor(std::log10(factor * ball)));
+      return ", one of " + format_number(std::ceil(factor * ball * digits) / digits) + " mm would hold them";
     }
     return {};
   }
