@@ -10,7 +10,7 @@ bodies. `meso` realises each and judges it by its own evaluator of the definitio
 One that fails is made smaller, element by element and number by number, as long as it still fails, and printed.
 
 Refusals are judged, too. A part called empty must have no point of the definitions inside, by functions that are written
-beside each document here. Booleans that failed the engine's own check and documents that took more than --seconds of a
+beside each document here. Booleans that failed the engine's own check, struts too thick for their nodes and documents that took more than --seconds of a
 processor are counted, and must stay a small share (--refusals). Any other reason fails.
 """
 import argparse
@@ -35,7 +35,7 @@ from membership import (REFUSALS, box, boolean, cell_section, cone, document, in
                         rotation, sphere, truss, turned)
 
 NAMESPACE = "urn:meso-format:1.0"
-ALLOWED = {"GEOMETRY_BOOLEAN", "LIMIT_TIME"}  # reasons for refusals, besides parts that are empty
+ALLOWED = {"GEOMETRY_BOOLEAN", "GEOMETRY_STRUTS_THICK", "LIMIT_TIME"}  # reasons for refusals, besides parts that are empty
 STEPS = 80  # runs of `meso` that making a document smaller may take
 ElementTree.register_namespace("", NAMESPACE)
 
