@@ -46,30 +46,15 @@ bool apply_all(const double* a, const double* b, std::size_t count, double* out)
   return true;
 }
 
+template <Op... ops>
+bool apply_one_of(Op op, const double* a, const double* b, std::size_t count, double* out) {
+  return ((op == ops && apply_all<ops>(a, b, count, out)) || ...);
+}
+
 /// The operations that bodies are mostly made of, chosen once for all points; whether it is one of them.
 bool apply_often(Op op, const double* a, const double* b, std::size_t count, double* out) {
-  switch (op) {
-    case Op::negate:
-      return apply_all<Op::negate>(a, b, count, out);
-    case Op::abs:
-      return apply_all<Op::abs>(a, b, count, out);
-    case Op::sqrt:
-      return apply_all<Op::sqrt>(a, b, count, out);
-    case Op::add:
-      return apply_all<Op::add>(a, b, count, out);
-    case Op::subtract:
-      return apply_all<Op::subtract>(a, b, count, out);
-    case Op::multiply:
-      return apply_all<Op::multiply>(a, b, count, out);
-    case Op::divide:
-      return apply_all<Op::divide>(a, b, count, out);
-    case Op::min:
-      return apply_all<Op::min>(a, b, count, out);
-    case Op::max:
-      return apply_all<Op::max>(a, b, count, out);
-    default:
-      return false;
-  }
+  return apply_one_of<Op::negate, Op::abs, Op::sqrt, Op::add, Op::subtract, Op::multiply, Op::divide, Op::min, Op::max>(
+      op, a, b, count, out);
 }
 
 }  // namespace
