@@ -53,7 +53,8 @@ bool memory_fits(const Grid& grid, bool signs_only, std::uint64_t held, const Ru
              nz = static_cast<std::uint64_t>(grid.nodes[2]);
   const std::size_t jobs = jobs_of(run, bricks_of(grid));
   const std::uint64_t plane_of_signs = (nx / 64 + 1) * ny * sizeof(std::uint64_t);
-  const std::uint64_t thread = SampleRows::bytes(nx, ny) + (signs_only ? 3 * (brick_planes + 1) : 2) * plane_of_signs;
+  const std::uint64_t thread =
+      SampleRows::bytes(nx, ny) + 2 * plane_of_signs + (signs_only ? EdgeEndSampler::bytes(nx, ny) : 0);
   const std::uint64_t record = (ny + 1) * (nz + 1) * (sizeof(RowCounts) + 4 * sizeof(std::uint16_t));
   const std::uint64_t shared = (nx + ny + nz) * sizeof(double) + bricks_of(grid) * sizeof(BrickRecord) + record;
   return fits(grid, held + jobs * thread + shared,

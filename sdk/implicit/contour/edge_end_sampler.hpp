@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// For fields whose signs are cheap and whose values are dear: gets the signs of a whole slab first, then asks for
-// values only where an edge inside the slab is crossed, all at once.
+// For fields whose signs are cheap and whose values are dear: gets the signs of a plane and of those beside it first,
+// then asks for values only where an edge inside the slab is crossed and the row did not tell, all at once.
 
 #include <tbb/cache_aligned_allocator.h>
 
+#include <array>
 #include <functional>
 #include <vector>
 
@@ -23,36 +24,44 @@ class EdgeEndSampler final : public GridSampler {
   void row(std::int32_t j, std::int32_t k, float* values, std::uint64_t* inside) override;
   void values_at(std::span<const Vec3> points, double* out) override { source_->values_at(points, out); }
 
-  /// What it holds now.
-  [[nodiscard]] std::uint64_t bytes() const;
+  /// What each holds from the start.
+  [[nodiscard]] static std::uint64_t bytes(std::uint64_t nx, std::uint64_t ny);
+  /// What it holds now beyond that.
+  [[nodiscard]] std::uint64_t grown_bytes() const;
 
  private:
-  [[nodiscard]] std::uint64_t* at(std::int32_t j, std::int32_t k) { return signs_.data() + row_of(j, k) * words_; }
-  [[nodiscard]] std::size_t row_of(std::int32_t j, std::int32_t k) const {
-    return static_cast<std::size_t>(k - first_) * rows_ + static_cast<std::size_t>(j);
+  using Words = std::vector<std::uint64_t, tbb::cache_aligned_allocator<std::uint64_t>>;
+  using Floats = std::vector<float, tbb::cache_aligned_allocator<float>>;
+
+  [[nodiscard]] std::uint64_t* signs(std::int32_t j, std::int32_t k) {
+    return signs_[static_cast<std::size_t>(k) % signs_.size()].data() + static_cast<std::size_t>(j) * words_;
   }
-  void keep_exact();
-  std::size_t mark_ends(std::int32_t j, std::int32_t k);
-  void take_values(std::int32_t j, std::int32_t k);
-  void flush();
+  [[nodiscard]] float* values(std::int32_t j, std::int32_t k) {
+    return values_[static_cast<std::size_t>(k) % values_.size()].data() + static_cast<std::size_t>(j) * stride_;
+  }
+  void sample_plane(std::int32_t k);
+  void enter_plane(std::int32_t k);
+  void mark_ends(std::int32_t j, std::int32_t k);
+  void look_at_ends(std::int32_t j, std::int32_t k);
+  void ask_for_missing();
+
+  struct Missing {
+    float* value;
+    bool negative;
+  };
 
   Grid grid_;
   std::unique_ptr<GridSampler> source_;
   float exact_within_;
   std::function<bool()> go_on_;
-  std::size_t rows_, words_;
-  std::int32_t first_ = 0, last_ = 0;
-  std::vector<std::uint64_t, tbb::cache_aligned_allocator<std::uint64_t>> signs_;
-  std::vector<float, tbb::cache_aligned_allocator<float>> row_values_;  // meant where exact
-  std::vector<std::uint64_t> exact_;                                    // by node
-  std::vector<float> exact_values_;                                     // of those nodes
-  std::vector<std::size_t> first_exact_;                                // by row
-  std::vector<std::uint64_t> ends_;                                     // of crossed edges, by node
-  std::vector<std::size_t> first_value_;                                // by row
-  std::vector<Vec3> points_;                                            // some rows' worth, not exact
-  std::vector<std::size_t> places_;                                     // of their values
+  std::size_t words_, stride_;  // of a row
+  std::int32_t first_ = 0, last_ = 0, in_plane_ = -1;
+  std::array<Words, 3> signs_;    // of the planes below, at and above the one at hand, in turn
+  std::array<Floats, 2> values_;  // of the last two of these
+  std::vector<std::uint64_t> ends_;  // of crossed edges, in the row at hand
+  std::vector<Vec3> points_;         // ends that the plane's rows did not tell
+  std::vector<Missing> missing_;     // at these
   std::vector<double> computed_;
-  std::vector<float> values_;
 };
 
 }  // namespace meso::implicit

@@ -58,7 +58,7 @@ VertexPass::VertexPass(const Layout& layout, const GridSource& source, const Mes
 }
 
 std::uint64_t VertexPass::grown_by() {
-  std::uint64_t now = edge_ends_ == nullptr ? 0 : edge_ends_->bytes();
+  std::uint64_t now = edge_ends_ == nullptr ? 0 : edge_ends_->grown_bytes();
   if (sharp_)
     now += sharp_->crossings.bytes() + sharp_->finder.bytes() +
            (points_.capacity() + sharp_->with_features.capacity()) * sizeof(Vec3);
