@@ -56,8 +56,8 @@ class EdgeEndSampler final : public GridSampler {
   std::function<bool()> go_on_;
   std::size_t words_, stride_;  // of a row
   std::int32_t first_ = 0, last_ = 0, in_plane_ = -1;
-  std::array<Words, 3> signs_;    // of the planes below, at and above the one at hand, in turn
-  std::array<Floats, 2> values_;  // of the last two of these
+  std::array<Words, 3> signs_;       // of the planes below, at and above the one at hand, in turn
+  std::array<Floats, 2> values_;     // of the last two of these
   std::vector<std::uint64_t> ends_;  // of crossed edges, in the row at hand
   std::vector<Vec3> points_;         // ends that the plane's rows did not tell
   std::vector<Missing> missing_;     // at these

@@ -8,8 +8,9 @@
 
 namespace meso::implicit {
 
+/// Empty if the run was stopped.
 [[nodiscard]] std::unique_ptr<ExternalField::Prepared> prepare_bricks(std::shared_ptr<const PlacedCells> cells,
                                                                       const Grid& grid, const Affine& field_from_grid,
-                                                                      double band);
+                                                                      double band, const RunOptions& run);
 
 }  // namespace meso::implicit

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "cell_bricks.hpp"
+#include "cell_period.hpp"
 
 namespace meso::implicit {
 
@@ -49,8 +50,12 @@ Box3 PlacedCells::bounds(double level) const {
 }
 
 std::unique_ptr<ExternalField::Prepared> PlacedCells::prepare(const Grid& grid, const Affine& field_from_grid,
-                                                              double band, const RunOptions&) const {
-  return prepare_bricks(shared_from_this(), grid, field_from_grid, band);
+                                                              double band, const RunOptions& run) const {
+  return prepare_bricks(shared_from_this(), grid, field_from_grid, band, run);
+}
+
+std::uint64_t PlacedCells::prepared_bytes(const Grid& grid) const {
+  return index_.repetition() ? CellPeriod::most_bytes(grid.node_count()) : 0;
 }
 
 }  // namespace meso::implicit

@@ -24,6 +24,7 @@ class PlacedCells final : public ExternalField, public std::enable_shared_from_t
   [[nodiscard]] std::unique_ptr<Prepared> prepare(const Grid& grid, const Affine& field_from_grid, double band,
                                                   const RunOptions& run) const override;
   [[nodiscard]] std::uint64_t bytes() const override { return index_.bytes(); }
+  [[nodiscard]] std::uint64_t prepared_bytes(const Grid& grid) const override;
 
   [[nodiscard]] const PrimitiveIndex& index() const { return index_; }
   [[nodiscard]] double reach() const { return reach_; }

@@ -32,6 +32,14 @@ class PrimitiveIndex {
       visit_tree(box, f);
   }
 
+  /// The same for a lattice that goes on without end, where it is more than one step long: f(primitive, steps). Their
+  /// displacement is repetition()->steps * steps. REQUIRES: a repetition.
+  template <class Function>
+  void visit_endless(const Box3& box, Function f) const {
+    visit_steps(box, true, f);
+  }
+
+  [[nodiscard]] const std::optional<Repetition>& repetition() const { return repetition_; }
   [[nodiscard]] const std::vector<Primitive>& primitives() const { return primitives_; }
   [[nodiscard]] const Box3& box() const { return box_; }  ///< around all copies
   [[nodiscard]] std::uint64_t bytes() const;
@@ -62,28 +70,36 @@ class PrimitiveIndex {
 
   template <class Function>
   void visit_repeated(const Box3& box, Function f) const {
+    visit_steps(box, false, [&](const Primitive& primitive, const std::array<std::int64_t, 3>& s) {
+      f(primitive,
+        repetition_->steps * Vec3{static_cast<double>(s[0]), static_cast<double>(s[1]), static_cast<double>(s[2])});
+    });
+  }
+
+  template <class Function>
+  void visit_steps(const Box3& box, bool endless, Function f) const {
     const Vec3 half = 0.5 * (box.max - box.min), middle = box.min + half;
     const Vec3 reach = absolute_inverse_ * half, at = inverse_ * middle;
     for (std::size_t p = 0; p < primitives_.size(); ++p) {
       // The copies whose boxes' middles are near enough, in steps.
-      std::array<std::int64_t, 3> first{}, last{};
+      std::array<std::int64_t, 3> first{}, last{}, s{};
       bool none = false;
       for (std::size_t a = 0; a < 3; ++a) {
         const double far = reach[a] + reaches_[p][a], from = at[a] - places_[p][a];
-        first[a] = repetition_->count[a] == 1 ? 0 : clamped(std::ceil(from - far), a);
-        last[a] = repetition_->count[a] == 1 ? 0 : clamped(std::floor(from + far), a);
-        none = none || from + far < 0 || from - far > static_cast<double>(repetition_->count[a] - 1);
+        const bool one = repetition_->count[a] == 1, clamps = !endless || one;
+        first[a] = one ? 0 : steps_of(std::ceil(from - far), a, clamps);
+        last[a] = one ? 0 : steps_of(std::floor(from + far), a, clamps);
+        none = none || (clamps && (from + far < 0 || from - far > static_cast<double>(repetition_->count[a] - 1)));
       }
       if (none) continue;
-      for (std::int64_t i = first[0]; i <= last[0]; ++i)
-        for (std::int64_t j = first[1]; j <= last[1]; ++j)
-          for (std::int64_t k = first[2]; k <= last[2]; ++k)
-            f(primitives_[p],
-              repetition_->steps * Vec3{static_cast<double>(i), static_cast<double>(j), static_cast<double>(k)});
+      for (s[0] = first[0]; s[0] <= last[0]; ++s[0])
+        for (s[1] = first[1]; s[1] <= last[1]; ++s[1])
+          for (s[2] = first[2]; s[2] <= last[2]; ++s[2]) f(primitives_[p], s);
     }
   }
-  [[nodiscard]] std::int64_t clamped(double steps, std::size_t axis) const {
-    return static_cast<std::int64_t>(std::fmin(std::fmax(steps, 0), static_cast<double>(repetition_->count[axis] - 1)));
+  [[nodiscard]] std::int64_t steps_of(double steps, std::size_t axis, bool clamps) const {
+    if (clamps) steps = std::fmin(std::fmax(steps, 0), static_cast<double>(repetition_->count[axis] - 1));
+    return static_cast<std::int64_t>(steps);
   }
 
   void build(std::uint32_t node, std::uint32_t first, std::uint32_t last);

@@ -53,6 +53,13 @@ BlockIntervals::BlockIntervals(const Plan& plan)
       other_nodes_.push_back(id);
     }
   }
+  std::vector<bool> depends(graph_.size());
+  for (const Graph::Id id : other_nodes_) {
+    const auto operands = graph_.operands(id);
+    depends[id] = graph_.is_external(id) ||
+                  std::any_of(operands.begin(), operands.end(), [&](Graph::Id o) { return depends[o]; });
+    if (depends[id]) on_externals_.push_back(id);
+  }
 }
 
 std::size_t BlockIntervals::blocks(std::size_t axis) const {
@@ -100,12 +107,18 @@ const Interval& BlockIntervals::of_block(std::size_t x_block) {
   set_range(0, i, i + side);
   load(x_nodes_, x_table_, x_block);
   load(xz_nodes_, xz_table_, x_block);
+  // An external's interval is dear, and often the rest of the field tells the sign whatever it is.
+  const Interval& root = intervals_[plan_.root()];
+  asks_externals_ = false;
   for (const Graph::Id id : other_nodes_) intervals_[id] = of_operation(id);
-  return intervals_[plan_.root()];
+  if (on_externals_.empty() || root.all_inside() || root.all_outside()) return root;
+  asks_externals_ = true;
+  for (const Graph::Id id : on_externals_) intervals_[id] = of_operation(id);
+  return root;
 }
 
 Interval BlockIntervals::of_operation(Graph::Id id) const {
-  if (graph_.is_external(id)) return of_external(id);
+  if (graph_.is_external(id)) return asks_externals_ ? of_external(id) : Interval::everything();
   const auto operands = graph_.operands(id);
   if (graph_[id].op == sum_of_products) {
     Interval sum = intervals_[operands[0]];

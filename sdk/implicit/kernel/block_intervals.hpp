@@ -26,7 +26,7 @@ class BlockIntervals {
 
   void enter_slab(std::int32_t first, std::int32_t last);
   void enter_blocks_of_row(std::size_t y_block);
-  /// Of the root, with everything that it needs.
+  /// Of the root, with everything that it needs; less exactly where the root has one sign.
   const Interval& of_block(std::size_t x_block);
   /// In the block at hand. REQUIRES: a node that the root needs.
   [[nodiscard]] const Interval& operator[](Graph::Id id) const { return intervals_[id]; }
@@ -48,6 +48,8 @@ class BlockIntervals {
   const Plan& plan_;
   const Graph& graph_;
   Nodes x_nodes_, y_nodes_, z_nodes_, xz_nodes_, yz_nodes_, other_nodes_;
+  Nodes on_externals_;  ///< of the others those that are external fields or come from such
+  bool asks_externals_ = true;
   std::vector<Interval> x_table_, y_table_, xz_table_;  ///< block by block
   std::vector<Interval> intervals_;                     ///< by node
   Box3 box_;                                            ///< of the block at hand
