@@ -13,14 +13,23 @@ using expr::Op;
 
 namespace {
 
-Interval range_of(const double* values, std::int32_t first, std::int32_t last) {
-  Interval r{HUGE_VAL, -HUGE_VAL, false};
+/// Of no value yet.
+constexpr Interval nothing{HUGE_VAL, -HUGE_VAL, false};
+
+void extend(Interval& r, const double* values, std::int32_t first, std::int32_t last) {
   for (std::int32_t i = first; i < last; ++i) {
     r.lo = std::min(r.lo, values[i]);  // a NaN changes neither
     r.hi = std::max(r.hi, values[i]);
     r.undefined = r.undefined || std::isnan(values[i]);
   }
-  return r.lo <= r.hi ? r : Interval{0, 0, true};
+}
+
+Interval settled(const Interval& r) { return r.lo <= r.hi ? r : Interval{0, 0, true}; }
+
+Interval range_of(const double* values, std::int32_t first, std::int32_t last) {
+  Interval r = nothing;
+  extend(r, values, first, last);
+  return settled(r);
 }
 
 /// Rounded like the samples themselves, in the same order: rounding never decreases, so no sample can leave it.
@@ -41,15 +50,17 @@ BlockIntervals::BlockIntervals(const Plan& plan)
       z_nodes_(plan.nodes(Plan::Where::z_table)),
       xz_nodes_(plan.nodes(Plan::Where::xz_row)),
       yz_nodes_(plan.nodes(Plan::Where::yz_column)),
+      xy_nodes_(plan.nodes(Plan::Where::xy_table)),
       x_table_(table_intervals(x_nodes_, 0)),
       y_table_(table_intervals(y_nodes_, 1)),
+      xy_table_(xy_intervals()),
       intervals_(graph_.size()) {
   for (const Graph::Id id : graph_.reachable(plan.root())) {
     const Plan::Where where = plan.where(id);
     if (where == Plan::Where::number) {
       const double v = graph_[id].number;
       intervals_[id] = std::isnan(v) ? Interval{0, 0, true} : Interval{v, v, false};
-    } else if (where == Plan::Where::step || where == Plan::Where::xy_table || graph_[id].axes == (x_axis | y_axis)) {
+    } else if (where == Plan::Where::step) {
       other_nodes_.push_back(id);
     }
   }
@@ -72,6 +83,22 @@ std::vector<Interval> BlockIntervals::table_intervals(const Nodes& nodes, std::s
     for (const Graph::Id id : nodes)
       result.push_back(range_of(plan_.table(id), std::max(0, block * side - 1),
                                 std::min(plan_.grid().nodes[axis], (block + 1) * side + 1)));
+  return result;
+}
+
+std::vector<Interval> BlockIntervals::xy_intervals() const {
+  const std::int32_t nx = plan_.grid().nodes[0], ny = plan_.grid().nodes[1];
+  const std::size_t row = padded(static_cast<std::size_t>(nx));
+  std::vector<Interval> result;
+  for (std::int32_t y = 0; y < ny && !xy_nodes_.empty(); y += side)
+    for (std::int32_t x = 0; x < nx; x += side)
+      for (const Graph::Id id : xy_nodes_) {
+        Interval r = nothing;
+        for (std::int32_t j = std::max(0, y - 1); j < std::min(ny, y + side + 1); ++j)
+          extend(r, plan_.table(id) + static_cast<std::size_t>(j) * row, std::max(0, x - 1),
+                 std::min(nx, x + side + 1));
+        result.push_back(settled(r));
+      }
   return result;
 }
 
@@ -100,6 +127,7 @@ void BlockIntervals::enter_blocks_of_row(std::size_t y_block) {
   set_range(1, j, j + side);
   load(y_nodes_, y_table_, y_block);
   for (const Graph::Id id : yz_nodes_) intervals_[id] = of_operation(id);
+  xy_first_ = y_block * x_blocks();
 }
 
 const Interval& BlockIntervals::of_block(std::size_t x_block) {
@@ -107,6 +135,7 @@ const Interval& BlockIntervals::of_block(std::size_t x_block) {
   set_range(0, i, i + side);
   load(x_nodes_, x_table_, x_block);
   load(xz_nodes_, xz_table_, x_block);
+  load(xy_nodes_, xy_table_, xy_first_ + x_block);
   // An external's interval is dear, and often the rest of the field tells the sign whatever it is.
   const Interval& root = intervals_[plan_.root()];
   asks_externals_ = false;

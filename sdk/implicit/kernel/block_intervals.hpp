@@ -40,6 +40,7 @@ class BlockIntervals {
   [[nodiscard]] std::size_t blocks(std::size_t axis) const;
   /// Per block the interval of each of the nodes, which are tables along the axis.
   [[nodiscard]] std::vector<Interval> table_intervals(const Nodes& nodes, std::size_t axis) const;
+  [[nodiscard]] std::vector<Interval> xy_intervals() const;
   [[nodiscard]] Interval of_operation(Graph::Id id) const;
   [[nodiscard]] Interval of_external(Graph::Id id) const;
   void set_range(std::size_t axis, std::int32_t first, std::int32_t last);
@@ -47,12 +48,13 @@ class BlockIntervals {
 
   const Plan& plan_;
   const Graph& graph_;
-  Nodes x_nodes_, y_nodes_, z_nodes_, xz_nodes_, yz_nodes_, other_nodes_;
+  Nodes x_nodes_, y_nodes_, z_nodes_, xz_nodes_, yz_nodes_, xy_nodes_, other_nodes_;
   Nodes on_externals_;  ///< of the others those that are external fields or come from such
   bool asks_externals_ = true;
-  std::vector<Interval> x_table_, y_table_, xz_table_;  ///< block by block
-  std::vector<Interval> intervals_;                     ///< by node
-  Box3 box_;                                            ///< of the block at hand
+  std::vector<Interval> x_table_, y_table_, xz_table_, xy_table_;  ///< block by block
+  std::size_t xy_first_ = 0;                                       ///< block of xy_table_ that the row begins with
+  std::vector<Interval> intervals_;                                ///< by node
+  Box3 box_;                                                       ///< of the block at hand
 };
 
 }  // namespace meso::implicit

@@ -12,10 +12,12 @@ namespace {
 class Ball final : public ExternalField {
  public:
   mutable double asked_band = -1;
+  mutable std::size_t asked_intervals = 0;
   double exact_within = 0;  ///< of rows, whatever is asked
 
   [[nodiscard]] double value(Vec3 p) const override { return norm(p) - 1; }
   [[nodiscard]] Interval interval(const Box3& box) const override {
+    ++asked_intervals;
     const double middle = value(0.5 * (box.min + box.max)), reach = 0.5 * norm(box.max - box.min);
     return {middle - reach, middle + reach, false};
   }
@@ -113,6 +115,19 @@ TEST(External, IsAskedForEverythingWhereItsValueCounts) {
     expect_right_signs(term, false);
     EXPECT_EQ(ball->asked_band, HUGE_VAL);
   }
+}
+
+TEST(External, IntervalsAreAskedForOnlyWhereTheRestDoesNotTell) {
+  const auto ball = std::make_shared<Ball>();
+  const Term b = Term::external(ball), x = Term::coordinate(0);
+  const auto asked = [&](const Term& term) {
+    ball->asked_intervals = 0;
+    expect_right_signs(term, true);
+    return ball->asked_intervals;
+  };
+  const std::size_t everywhere = asked(b);
+  EXPECT_EQ(asked(max(b, x + 0.5)), everywhere / 2);  // x + 0.5 is negative in three of six blocks along x
+  EXPECT_EQ(asked(min(b, x + 0.5)), everywhere);      // without a value of the external there is none, which is outside
 }
 
 TEST(External, SaysHowFarItsRowsAreExact) {

@@ -32,6 +32,7 @@ bool is_dear(Op op) {
 Plan::Plan(Graph graph, Graph::Id root, const Grid& grid, const RowKernels& kernels, std::uint64_t max_table_bytes)
     : graph_(std::move(graph)), root_(root), grid_(grid), kernels_(kernels), order_(graph_.reachable(root)) {
   place_nodes(max_table_bytes);
+  set_aside_xy_steps();
   fill_tables();
 }
 
@@ -92,6 +93,19 @@ void Plan::place_nodes(std::uint64_t max_table_bytes) {
   }
 }
 
+/// What the root needs no more once the tables are there.
+void Plan::set_aside_xy_steps() {
+  std::vector<bool> needed(graph_.size());
+  needed[root_] = true;
+  for (auto id = order_.rbegin(); id != order_.rend(); ++id) {
+    Place& place = places_[*id];
+    if (place.where == Where::step && !needed[*id] && graph_[*id].axes == (x_axis | y_axis))
+      place.where = Where::xy_step;
+    else if (place.where == Where::step)
+      for (const Graph::Id operand : graph_.operands(*id)) needed[operand] = true;
+  }
+}
+
 std::optional<Operand> Plan::operand(Graph::Id id, std::size_t run_axis, double* plane) const {
   const Place& place = places_[id];
   double* const in_table = tables_.data() + place.offset;
@@ -115,6 +129,7 @@ std::optional<Operand> Plan::operand(Graph::Id id, std::size_t run_axis, double*
       return run_axis == 1 ? Operand{.base = plane + place.offset, .along = 1}
                            : Operand{.base = plane + place.offset, .row = 1, .uniform = true};
     case Where::step:
+    case Where::xy_step:
       break;
   }
   return std::nullopt;

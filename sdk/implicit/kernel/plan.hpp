@@ -28,11 +28,12 @@ class Plan {
   [[nodiscard]] const Grid& grid() const { return grid_; }
   [[nodiscard]] const RowKernels& kernels() const { return kernels_; }
 
-  enum class Where : std::uint8_t { number, x_table, y_table, z_table, xy_table, xz_row, yz_column, step };
+  /// xy_step: what only tables over x and y come from, once they are filled.
+  enum class Where : std::uint8_t { number, x_table, y_table, z_table, xy_table, xz_row, yz_column, step, xy_step };
   [[nodiscard]] Where where(Graph::Id id) const { return places_[id].where; }
   /// Nodes that lie there, operands first.
   [[nodiscard]] std::vector<Graph::Id> nodes(Where where) const;
-  /// A value per node of the axis. REQUIRES: where(id) is the table of that axis.
+  /// A value per node of the axis; over x and y, a row of padded(nodes[0]) for each y. REQUIRES: where(id) is a table.
   [[nodiscard]] const double* table(Graph::Id id) const { return tables_.data() + places_[id].offset; }
 
   [[nodiscard]] std::uint64_t table_bytes() const { return table_size_ * sizeof(double); }
@@ -52,6 +53,7 @@ class Plan {
     std::size_t offset = 0;
   };
   void place_nodes(std::uint64_t max_table_bytes);
+  void set_aside_xy_steps();
   void fill_tables();
   [[nodiscard]] std::vector<bool> nodes_worth_a_table() const;
   [[nodiscard]] std::optional<Operand> operand(Graph::Id id, std::size_t run_axis, double* plane) const;
