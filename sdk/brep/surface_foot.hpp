@@ -3,6 +3,7 @@
 // The point of a surface that is nearest to another point. Private.
 
 #include <optional>
+#include <vector>
 
 #include "meso/brep/body.hpp"
 #include "occt.hpp"
@@ -14,7 +15,7 @@ namespace meso::brep {
 /// By Newton's method from parameters nearby; nothing where it does not settle.
 [[nodiscard]] std::optional<gp_Pnt2d> foot_beside(ShapeAnalysis_Surface& surface, const gp_Pnt2d& start, Vec3 p);
 
-/// Closed forms, but for B-splines: those are searched, and the last answer is where the next search begins.
+/// Closed forms, but for B-splines: those are searched, and the nearest earlier answer is where a search begins.
 class SurfaceFoot {
  public:
   explicit SurfaceFoot(const Surface& surface);
@@ -24,8 +25,11 @@ class SurfaceFoot {
  private:
   const Surface& surface_;
   Handle(ShapeAnalysis_Surface) search_;
-  gp_Pnt2d last_;
-  bool has_last_ = false;
+  struct Answer {
+    Vec3 point;
+    gp_Pnt2d uv;
+  };
+  std::vector<Answer> known_;
 };
 
 }  // namespace meso::brep
