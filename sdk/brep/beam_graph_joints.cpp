@@ -22,15 +22,6 @@ double length_of(const BeamGraph& graph, const BeamGraph::Strut& s) {
   return norm(graph.nodes[s.node[1]].position - graph.nodes[s.node[0]].position);
 }
 
-/// (r + k s)^2 + s^2 = R^2, the larger s: where a cone has left the ball.
-StrutEnd leave_ball(double ball, double radius, double growth) {
-  const double a = 1 + growth * growth, b = radius * growth, c = radius * radius - ball * ball;
-  const double root = std::sqrt(std::max(0.0, b * b - a * c));
-  const double along = b > 0 ? -c / (b + root) : (root - b) / a;
-  const double at = radius + growth * along;
-  return {along, at, std::atan2(at, along)};
-}
-
 double distance_to_segment(Vec3 p, Vec3 a, Vec3 b) {
   const Vec3 way = b - a;
   const double t = std::clamp(dot(p - a, way) / dot(way, way), 0.0, 1.0);
@@ -51,12 +42,13 @@ double distance_of_segments(Vec3 a, Vec3 b, Vec3 c, Vec3 d) {
 
 class JointFinder {
  public:
-  JointFinder(BeamGraph graph, SnappedRadii& snapped, std::string& why) : snapped_(snapped), why_(why) {
+  JointFinder(BeamGraph graph, SnappedRadii& snapped, std::string& why, Meeting meeting)
+      : snapped_(snapped), why_(why), meeting_(meeting) {
     joints_.graph = std::move(graph);
   }
 
   std::optional<Joints> find() {
-    join_balls_that_meet();
+    if (meeting_ == Meeting::in_balls) join_balls_that_meet();
     const BeamGraph& graph = joints_.graph;
     joints_.ends.resize(graph.struts.size());
     joints_.is_swallowed.assign(graph.struts.size(), false);
@@ -70,6 +62,7 @@ class JointFinder {
         snapped_.tell(graph.struts[s].radius[end] - ball);
         ball = graph.struts[s].radius[end];
       }
+    if (meeting_ == Meeting::beyond_balls) return keep_apart() ? std::optional(std::move(joints_)) : std::nullopt;
     bool changed = false;
     if (!measure_ends() || !settle_balls(changed)) return {};
     if (changed && (!measure_ends() || !settle_balls(changed))) return {};
@@ -237,7 +230,7 @@ class JointFinder {
     const auto& q = joints_.graph.struts[b].node;
     for (const std::uint32_t i : {0u, 1u})
       for (const std::uint32_t k : {0u, 1u})
-        if (p[i] == q[k]) return stay_in_cones(2 * a + i, 2 * b + k);
+        if (p[i] == q[k]) return meeting_ == Meeting::beyond_balls || stay_in_cones(2 * a + i, 2 * b + k);
     const double distance = distance_of_segments(at(p[0]), at(p[1]), at(q[0]), at(q[1]));
     if (distance > thickness(a) + thickness(b) + least_gap) return true;
     return refuse("two struts that share no node meet near " + place(0.5 * (at(p[0]) + at(p[1]))));
@@ -274,11 +267,21 @@ class JointFinder {
 
   SnappedRadii& snapped_;
   std::string& why_;
+  Meeting meeting_;
   Joints joints_;
   bool resized_ = false;
 };
 
 }  // namespace
+
+// (r + k s)^2 + s^2 = R^2, the larger s.
+StrutEnd leave_ball(double ball, double radius, double growth) {
+  const double a = 1 + growth * growth, b = radius * growth, c = radius * radius - ball * ball;
+  const double root = std::sqrt(std::max(0.0, b * b - a * c));
+  const double along = b > 0 ? -c / (b + root) : (root - b) / a;
+  const double at = radius + growth * along;
+  return {along, at, std::atan2(at, along)};
+}
 
 Vec3 Joints::direction(Leaving l) const {
   const auto& node = graph.struts[l / 2].node;
@@ -286,8 +289,8 @@ Vec3 Joints::direction(Leaving l) const {
   return way / norm(way);
 }
 
-std::optional<Joints> joints_of(BeamGraph graph, SnappedRadii& snapped, std::string& why) {
-  return JointFinder(std::move(graph), snapped, why).find();
+std::optional<Joints> joints_of(BeamGraph graph, SnappedRadii& snapped, std::string& why, Meeting meeting) {
+  return JointFinder(std::move(graph), snapped, why, meeting).find();
 }
 
 }  // namespace meso::brep

@@ -23,6 +23,10 @@ struct StrutEnd {
   double angle = 0;   ///< between the strut's axis and a point of the circle, seen from the node
 };
 
+/// Where a cone about an axis through the centre of a ball has left it: of that radius at the centre, `growth` per
+/// length.
+[[nodiscard]] StrutEnd leave_ball(double ball, double radius, double growth);
+
 /// One end of a strut: twice the strut's number, and one more at its second node.
 using Leaving = std::uint32_t;
 
@@ -41,7 +45,11 @@ struct Joints {
   [[nodiscard]] Vec3 direction(Leaving l) const;
 };
 
+/// Where the struts of a node may meet: within its ball, or anywhere; then there are no ends.
+enum class Meeting { in_balls, beyond_balls };
+
 /// Empty, and why, if struts or balls meet in other ways. Balls that are too small by `equal_radii` are made larger.
-[[nodiscard]] std::optional<Joints> joints_of(BeamGraph graph, SnappedRadii& snapped, std::string& why);
+[[nodiscard]] std::optional<Joints> joints_of(BeamGraph graph, SnappedRadii& snapped, std::string& why,
+                                              Meeting meeting = Meeting::in_balls);
 
 }  // namespace meso::brep

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "beam_graph_body.hpp"
+#include "beam_graph_mitred.hpp"
 #include "box_pairs.hpp"
 #include "meso/base/number.hpp"
 #include "meso/brep/measure.hpp"
@@ -51,6 +52,11 @@ std::string crowded_node(const BeamGraph& graph) {
          rounded(ball) + " mm, and passes into that of a node " + rounded(away) + " mm away";
 }
 
+void tell_snapped(const SnappedRadii& snapped, ElementId where, const SolidContext& context) {
+  if (snapped.count > 0)
+    context.report(Code::geometry_radii_snapped, where, {std::to_string(snapped.count), format_number(snapped.most)});
+}
+
 }  // namespace
 
 bool may_be_beam_graph(const eval::CellStream& cells) {
@@ -69,7 +75,16 @@ std::optional<BeamGraphPart> beam_graph_part(const eval::CellStream& cells, Elem
   auto graph = beam_graph(cells, snapped, why, context);
   const std::uint64_t kept = graph ? graph->cells : 0;
   const std::string crowded = graph && has_touching_circles(cells) ? crowded_node(*graph) : "";
-  const auto joints = graph ? joints_of(std::move(*graph), snapped, why) : std::nullopt;
+  const SnappedRadii of_graph = snapped;
+  const auto joints = graph ? joints_of(*graph, snapped, why) : std::nullopt;
+  if (graph && !joints) {
+    snapped = of_graph;
+    std::string why_not;
+    if (auto body = mitred_body(*graph, options, snapped, why_not)) {
+      tell_snapped(snapped, where, context);
+      return BeamGraphPart{std::move(*body), kept};
+    }
+  }
   if (!joints) {
     if (!why.empty()) context.report(Code::geometry_struts_meet, where, {why});
     // Booleans of such balls take minutes and fail.
@@ -85,8 +100,7 @@ std::optional<BeamGraphPart> beam_graph_part(const eval::CellStream& cells, Elem
                     format_number(body->pieces_volume)});
     return {};
   }
-  if (snapped.count > 0)
-    context.report(Code::geometry_radii_snapped, where, {std::to_string(snapped.count), format_number(snapped.most)});
+  tell_snapped(snapped, where, context);
   return BeamGraphPart{std::move(*body), kept};
 }
 
