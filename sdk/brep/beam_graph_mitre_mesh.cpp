@@ -79,7 +79,7 @@ class MitreRow {
   /// The border comes to a tip at `from` and goes back above itself to `to`.
   std::uint32_t end_before(std::uint32_t from, std::uint32_t to) {
     Indices low{from}, high;
-    while (row_.size() > 1 && turn(row_.back()) > turn(to)) {
+    while (row_.size() > 1 && turn(row_.back()) >= turn(to)) {
       row_.pop_back();
       low.insert(low.begin(), row_.back());
     }
@@ -94,7 +94,7 @@ class MitreRow {
   std::uint32_t end_behind(std::uint32_t from, std::uint32_t to) {
     Indices low{to}, high;
     std::uint32_t i = to;
-    while (i + 1 < points_.size() && turn(i) < turn(from)) low.push_back(++i);
+    while (i + 1 < points_.size() && turn(i) <= turn(from)) low.push_back(++i);
     for (std::uint32_t k = to; k > from; --k) high.push_back(k);
     high.push_back(from);
     fill(low, high);

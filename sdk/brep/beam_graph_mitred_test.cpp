@@ -131,6 +131,11 @@ TEST_F(MitredBeamsTest, CornersOfFourStrutsInAPlaneAreOnePoint) {
   expect_body(made, "beamGraph", 4 * pi * r * r * length - 16.0 / 3 * cubed + 4 * 2.0 / 3 * pi * cubed);
 }
 
+TEST_F(MitredBeamsTest, BallsSmallerThanAutomaticOnesKeepTheirShape) {
+  const Beams beams = star(0.6, {{{}, {4, 0, 0}, 0.5, 0.5}, {{}, {0, 4, 0}, 0.5, 0.5}});
+  expect_as_defined(realised(text_of(beams), meshed), beams, {-0.6, -0.6, -0.6}, {4.5, 4.5, 0.6});
+}
+
 TEST_F(MitredBeamsTest, StrutsOfDifferentRadiiMeetAsDefined) {
   const Beams beams =
       star(0.45, {{{}, {3, 0, 0}, 0.4, 0.4}, {{}, {2, 2, 0.5}, 0.3, 0.3}, {{}, {-1, 2, -1}, 0.45, 0.45}});
@@ -194,9 +199,10 @@ TEST(MitreMesh, ABorderThatTurnsBackIsFilledWithoutFolds) {
 TEST(BallFaces, PolesAndSeamKeepOffALune) {
   UnitLoop lune;
   for (int i = 0; i < 20; ++i) lune.push_back({0, std::sin(pi * i / 20), -std::cos(pi * i / 20)});
-  for (int i = 0; i < 20; ++i)
-    lune.push_back(
-        {-std::sin(pi * i / 20) * std::sin(0.4), std::sin(pi * i / 20) * std::cos(0.4), std::cos(pi * i / 20)});
+  for (int i = 0; i < 20; ++i) {
+    const double out = std::sin(pi * i / 20);
+    lune.push_back({out * std::sin(0.4), out * std::cos(0.4), std::cos(pi * i / 20)});
+  }
   const auto axes = axes_off({}, {lune});
   ASSERT_TRUE(axes);
   for (const Vec3& p : lune) {

@@ -79,11 +79,12 @@ std::optional<BeamGraphPart> beam_graph_part(const eval::CellStream& cells, Elem
   const auto joints = graph ? joints_of(*graph, snapped, why) : std::nullopt;
   if (graph && !joints) {
     snapped = of_graph;
-    std::string why_not;
+    std::string why_not = "stopped";
     if (auto body = mitred_body(*graph, options, snapped, why_not)) {
       tell_snapped(snapped, where, context);
       return BeamGraphPart{std::move(*body), kept};
     }
+    why += "; nor are they to be cut at each other: " + why_not;
   }
   if (!joints) {
     if (!why.empty()) context.report(Code::geometry_struts_meet, where, {why});

@@ -192,16 +192,6 @@ TEST_F(BeamGraphTest, RadiiThatNearlyPartStrutsAreSnappedAndTold) {
   EXPECT_NEAR(measure(nearly->body).volume / measure(precise->body).volume, 1, 1e-4);
 }
 
-TEST_F(BeamGraphTest, SmallerBallsKeepTheirShapeByBooleans) {
-  const auto made =
-      realised(cell("<beams radius='0.5' nodeRadius='0.6'>" + node("a", "0", "0", "0") + node("b", "4", "0", "0") +
-                    node("c", "0", "4", "0") + beam("a", "b") + beam("a", "c") + "</beams>") +
-               union_of(once));
-  ASSERT_TRUE(made);
-  EXPECT_NE(made->way, "beamGraph");
-  EXPECT_TRUE(was_told(Code::geometry_struts_meet));
-}
-
 TEST_F(BeamGraphTest, BallsOfDifferentStrutsMayMeet) {
   // Two struts side by side; the balls at their ends pass into each other, two by two.
   const auto ball = [](const std::string& id, const std::string& x, const std::string& y) {
