@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "meso/implicit/point_function.hpp"
+#include "meso/implicit/point_program.hpp"
 
 namespace meso::implicit {
 namespace {
@@ -35,22 +36,23 @@ class Quantity final : public PointFunction {
 /// Many points walk to the surface side by side: a formula costs a fraction for many points of what it costs for one.
 class LevelDistance final : public PointFunction {
  public:
-  LevelDistance(const Term& f, double step, double reach) : f_(f), step_(step), reach_(reach) {}
+  LevelDistance(const Term& f, double step, double reach) : flat_(f), f_(f), step_(step), reach_(reach) {}
 
   void values(std::span<const Vec3> points, double* out) const override { values_within(points, HUGE_VAL, out); }
   void values_within(std::span<const Vec3> points, double within, double* out) const override {
-    f_.values(points, {out, points.size()});
+    f_.values(points, out);
     if (within == 0) return;  // only signs are asked for
     const double asked = std::min(within, reach_);
     std::vector<Walk> open, still_open;
+    Room room;
     for (std::size_t n = 0; n < points.size(); ++n)
       if (out[n] != 0 && !std::isnan(out[n])) open.push_back({n, points[n], out[n]});
     for (int i = 0; i < most_steps && !open.empty(); ++i) {
-      const std::vector<Vec3> slopes = slopes_at(open);
+      find_slopes(open, room);
       still_open.clear();
       for (std::size_t k = 0; k < open.size(); ++k) {
         Walk& walk = open[k];
-        const Vec3 p = points[walk.n], slope = slopes[k];
+        const Vec3 p = points[walk.n], slope = room.slopes[k];
         const double square = dot(slope, slope), steepness = std::sqrt(square);
         double distance = norm(p - walk.q);
         if (!(square > 0) || !std::isfinite(square)) {
@@ -65,11 +67,11 @@ class LevelDistance final : public PointFunction {
         out[walk.n] = std::copysign(distance, out[walk.n]);
       }
       open.swap(still_open);
-      ask(open);
+      ask(open, room);
     }
   }
   [[nodiscard]] Interval interval(const Box3& box) const override {
-    const Interval f = f_.interval(box);
+    const Interval f = flat_.interval(box);
     return {f.lo > 0 ? 0 : -HUGE_VAL, f.hi < 0 ? 0 : HUGE_VAL, f.undefined};
   }
 
@@ -78,6 +80,11 @@ class LevelDistance final : public PointFunction {
     std::size_t n;  ///< of the point
     Vec3 q;
     double f;
+  };
+  /// For what is asked together.
+  struct Room {
+    std::vector<Vec3> points, slopes;
+    std::vector<double> f;
   };
 
   /// Down to the surface, and along it towards the point below p. False where that was the last step.
@@ -91,33 +98,34 @@ class LevelDistance final : public PointFunction {
     // What is left of the way along the surface counts with its square.
     return norm(down) > 1e-6 * step_ || dot(along, along) > 2e-6 * step_ * norm(p - walk.q);
   }
-  [[nodiscard]] std::vector<Vec3> slopes_at(std::span<const Walk> walks) const {
+  /// Differences.
+  void find_slopes(std::span<const Walk> walks, Room& room) const {
     const double h = 1e-6 * step_;
-    std::vector<Vec3> points, slopes;
+    room.points.clear();
     for (const Walk& w : walks)
       for (std::size_t axis = 0; axis < 3; ++axis) {
-        points.push_back(w.q);
-        points.back()[axis] += h;
+        room.points.push_back(w.q);
+        room.points.back()[axis] += h;
       }
-    std::vector<double> f(points.size());
-    f_.values(points, f);
-    for (std::size_t k = 0; k < walks.size(); ++k) {
-      slopes.emplace_back();
+    room.f.resize(room.points.size());
+    f_.values(room.points, room.f.data());
+    room.slopes.resize(walks.size());
+    for (std::size_t k = 0; k < walks.size(); ++k)
       for (std::size_t axis = 0; axis < 3; ++axis)
-        slopes.back()[axis] = (f[3 * k + axis] - walks[k].f) / (points[3 * k + axis][axis] - walks[k].q[axis]);
-    }
-    return slopes;
+        room.slopes[k][axis] =
+            (room.f[3 * k + axis] - walks[k].f) / (room.points[3 * k + axis][axis] - walks[k].q[axis]);
   }
-  void ask(std::span<Walk> walks) const {
-    std::vector<Vec3> points;
-    for (const Walk& w : walks) points.push_back(w.q);
-    std::vector<double> f(points.size());
-    f_.values(points, f);
-    for (std::size_t k = 0; k < walks.size(); ++k) walks[k].f = f[k];
+  void ask(std::span<Walk> walks, Room& room) const {
+    room.points.clear();
+    for (const Walk& w : walks) room.points.push_back(w.q);
+    room.f.resize(room.points.size());
+    f_.values(room.points, room.f.data());
+    for (std::size_t k = 0; k < walks.size(); ++k) walks[k].f = room.f[k];
   }
 
   static constexpr int most_steps = 12;
-  FlatTerm f_;
+  FlatTerm flat_;
+  PointProgram f_;
   double step_, reach_;
 };
 
