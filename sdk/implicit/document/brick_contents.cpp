@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "brick_contents.hpp"
 
-#include <array>
 #include <cmath>
 
 namespace meso::implicit {
@@ -25,10 +24,10 @@ void BrickContents::begin(const BrickBox& brick, const Nearness& nearness) {
   box_ = {brick.middle - brick.half, brick.middle + brick.half};
   nearness_ = nearness;
   calls_ = 0;
-  first_field_ = fields_.size();
   nearest_ = HUGE_VAL;
-  filled_ = false;
   candidates_.clear();
+  field_candidates_.clear();
+  farthest_ = HUGE_VAL;
   sources_.clear();
 }
 
@@ -44,19 +43,20 @@ void BrickContents::look_at(const Primitive& primitive, Vec3 displacement) {
   } else {
     const Interval values = primitive.placed.interval({box_.min - displacement, box_.max - displacement});
     if (values.lo > nearness_.margin) return;
-    filled_ = filled_ || (!nearness_.is_exact && values.hi < -nearness_.margin && !values.undefined);
-    sources_.push_back({static_cast<std::uint32_t>(fields_.size() - first_field_), call});
-    fields_.push_back(primitive.moved_by(displacement).placed);
+    if (!values.undefined) farthest_ = std::min(farthest_, values.hi);
+    field_candidates_.push_back({&primitive, displacement, values.lo, call});
   }
 }
 
 Brick BrickContents::finish() {
   Brick brick;
-  brick.field = static_cast<std::uint32_t>(first_field_);
+  brick.field = static_cast<std::uint32_t>(fields_.size());
   brick.capsule = static_cast<std::uint32_t>(capsules_.size());
-  keep_candidates(nearest_ + 2 * brick_.radius, capsules_.size());
-  if (filled_ || (!nearness_.is_exact && nearest_ + brick_.radius < -nearness_.margin)) {
-    fields_.resize(first_field_);
+  farthest_ = std::min(farthest_, nearest_ + brick_.radius);
+  keep_fields();
+  keep_capsules(brick.capsule);
+  if (!nearness_.is_exact && farthest_ < -nearness_.margin) {
+    fields_.resize(brick.field);
     capsules_.resize(brick.capsule);
     brick.state = Brick::State::inside;
     return brick;
@@ -67,30 +67,45 @@ Brick BrickContents::finish() {
   return brick;
 }
 
-/// Those that may be the nearest somewhere in the brick, once each, equal radii together.
-void BrickContents::keep_candidates(double farthest, std::size_t first) {
-  std::stable_sort(candidates_.begin(), candidates_.end(),
-                   [](const Candidate& a, const Candidate& b) { return a.capsule.radius > b.capsule.radius; });
-  const std::size_t fields = fields_.size() - first_field_;
-  for (const Candidate& c : candidates_) {
-    if (c.distance > farthest) continue;
-    std::size_t place = first;
-    while (place < capsules_.size() && !are_one(c.capsule, capsules_[place])) ++place;
-    if (place == capsules_.size()) capsules_.push_back(c.capsule);
-    sources_.push_back({static_cast<std::uint32_t>(fields + place - first), c.call});
+/// Those that may be the least somewhere in the brick.
+void BrickContents::keep_fields() {
+  std::uint32_t thing = 0;
+  for (const FieldCandidate& c : field_candidates_) {
+    const double slack = 1e-9 * (std::abs(c.least) + std::abs(farthest_));  // rounding must leave none out
+    if (c.least > farthest_ + slack) continue;
+    sources_.push_back({thing++, c.call});
+    fields_.push_back(c.primitive->moved_by(c.displacement).placed);
   }
 }
 
-void BrickSampler::sample(const BrickContents& contents, const Brick& brick, const Line& line, const double* x,
-                          double* out) {
-  row_(contents.capsules(brick), brick.capsules, line, x, out);
-  for (std::size_t i = 0; i < strut_lanes; ++i) out[i] = out[i] < far_ ? out[i] : far_;
+/// Likewise; once each, equal radii together.
+void BrickContents::keep_capsules(std::size_t first) {
+  std::stable_sort(candidates_.begin(), candidates_.end(),
+                   [](const Candidate& a, const Candidate& b) { return a.capsule.radius > b.capsule.radius; });
+  const auto fields = static_cast<std::uint32_t>(sources_.size());
+  for (const Candidate& c : candidates_) {
+    if (c.distance > nearest_ + 2 * brick_.radius) continue;
+    std::size_t place = first;
+    while (place < capsules_.size() && !are_one(c.capsule, capsules_[place])) ++place;
+    if (place == capsules_.size()) capsules_.push_back(c.capsule);
+    sources_.push_back({fields + static_cast<std::uint32_t>(place - first), c.call});
+  }
+}
+
+void BrickSampler::sample(const BrickContents& contents, const Brick& brick, std::span<const Line> lines,
+                          const double* x, double* out) {
+  const std::size_t count = lines.size() * strut_lanes;
+  for (std::size_t l = 0; l < lines.size(); ++l)
+    row_(contents.capsules(brick), brick.capsules, lines[l], x, out + l * strut_lanes);
+  for (std::size_t i = 0; i < count; ++i) out[i] = out[i] < far_ ? out[i] : far_;
+  if (brick.fields == 0) return;
+  points_.clear();
+  for (const Line& line : lines)
+    for (std::size_t i = 0; i < strut_lanes; ++i) points_.push_back(line.origin + x[i] * line.direction);
+  values_.resize(count);
   for (const PlacedField& field : contents.fields(brick)) {
-    std::array<Vec3, strut_lanes> points;
-    std::array<double, strut_lanes> values;
-    for (std::size_t i = 0; i < strut_lanes; ++i) points[i] = line.origin + x[i] * line.direction;
-    field.values(points, local_, values.data());
-    for (std::size_t i = 0; i < strut_lanes; ++i) out[i] = std::min(out[i], values[i]);
+    field.values(points_, local_, values_.data());
+    for (std::size_t i = 0; i < count; ++i) out[i] = std::min(out[i], values_[i]);
   }
 }
 

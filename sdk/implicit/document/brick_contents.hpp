@@ -69,10 +69,18 @@ class BrickContents {
     std::uint32_t call;
   };
 
+  struct FieldCandidate {
+    const Primitive* primitive;
+    Vec3 displacement;
+    double least;  ///< in the brick
+    std::uint32_t call;
+  };
+
   void begin(const BrickBox& brick, const Nearness& nearness);
   void look_at(const Primitive& primitive, Vec3 displacement);
   Brick finish();
-  void keep_candidates(double farthest, std::size_t first);
+  void keep_fields();
+  void keep_capsules(std::size_t first);
 
   std::vector<Capsule> capsules_;
   std::vector<PlacedField> fields_;
@@ -81,23 +89,26 @@ class BrickContents {
   Box3 box_;
   Nearness nearness_;
   std::uint32_t calls_ = 0;
-  std::size_t first_field_ = 0;
-  double nearest_ = 0;
-  bool filled_ = false;
+  double nearest_ = 0;   ///< of the capsules, to the brick's middle
+  double farthest_ = 0;  ///< nowhere in the brick is the least value more
   std::vector<Candidate> candidates_;
+  std::vector<FieldCandidate> field_candidates_;
   std::vector<Source> sources_;
 };
 
-/// A row of a brick, strut_lanes samples.
+/// Rows of a brick, strut_lanes samples each. What is neither strut nor ball is asked at all of them at once: a formula
+/// costs a fraction for many points of what it costs for few.
 class BrickSampler {
  public:
   explicit BrickSampler(const Nearness& nearness) : row_(strut_row()), far_(nearness.far) {}
-  void sample(const BrickContents& contents, const Brick& brick, const Line& line, const double* x, double* out);
+  void sample(const BrickContents& contents, const Brick& brick, std::span<const Line> lines, const double* x,
+              double* out);
 
  private:
   StrutRow row_;
   double far_;
-  std::vector<Vec3> local_;
+  std::vector<Vec3> points_, local_;
+  std::vector<double> values_;
 };
 
 }  // namespace meso::implicit

@@ -119,16 +119,18 @@ class Rows final : public ExternalRows {
   void evaluate(std::int32_t j, std::int32_t k, std::int32_t first, std::int32_t last, double* out) {
     const Shared& s = *shared_;
     Layer& layer = layer_at(k / side);
-    const Vec3 start = s.field_from_grid * Vec3{0, s.grid.coordinate(1, j), s.grid.coordinate(2, k)};
-    const Line line{start, s.field_from_grid.linear.column(0)};
+    const Line line = line_of(j, k);
     std::array<double, side> values;
     for (std::int32_t i = first; i < last;) {
       const std::int32_t x = i / side, end = std::min(last, (x + 1) * side);
       const Brick& brick = layer.brick(s, x, j / side);
-      if (brick.state == Brick::State::mixed) {
+      if (brick.fields > 0) {
+        const double* const row = patch(layer, brick, x, j, k) + std::ptrdiff_t{j % side} * side;
+        std::copy(row + i % side, row + (end - x * side), out + (i - first));
+      } else if (brick.state == Brick::State::mixed) {
         const bool whole = end - i == side;
         double* const to = whole ? out + (i - first) : values.data();
-        sampler_.sample(layer.contents(), brick, line, s.xs.data() + std::ptrdiff_t{x} * side, to);
+        sampler_.sample(layer.contents(), brick, {&line, 1}, s.xs.data() + std::ptrdiff_t{x} * side, to);
         if (!whole) std::copy(to + (i - x * side), to + (end - x * side), out + (i - first));
       } else {
         std::fill(out + (i - first), out + (end - first),
@@ -136,6 +138,27 @@ class Rows final : public ExternalRows {
       }
       i = end;
     }
+  }
+
+  [[nodiscard]] Line line_of(std::int32_t j, std::int32_t k) const {
+    const Shared& s = *shared_;
+    return {s.field_from_grid * Vec3{0, s.grid.coordinate(1, j), s.grid.coordinate(2, k)},
+            s.field_from_grid.linear.column(0)};
+  }
+
+  /// All rows of a brick in the plane k, of which row j is one; the others are asked for soon.
+  const double* patch(const Layer& layer, const Brick& brick, std::int32_t x, std::int32_t j, std::int32_t k) {
+    const Shared& s = *shared_;
+    if (patches_.empty()) patches_.resize(std::size_t(s.counts[0]) * std::size_t(s.counts[1]));
+    Patch& patch = patches_[std::size_t(j / side) * std::size_t(s.counts[0]) + std::size_t(x)];
+    if (patch.k == k) return patch.values.data();
+    std::array<Line, side> lines;
+    const std::int32_t begin = j / side * side, rows = std::min(side, s.grid.nodes[1] - begin);
+    for (std::int32_t r = 0; r < rows; ++r) lines[std::size_t(r)] = line_of(begin + r, k);
+    sampler_.sample(layer.contents(), brick, {lines.data(), std::size_t(rows)}, s.xs.data() + std::ptrdiff_t{x} * side,
+                    patch.values.data());
+    patch.k = k;
+    return patch.values.data();
   }
 
   void evaluate(std::span<const Vec3> points, std::span<const double> within, double* out) {
@@ -228,6 +251,11 @@ class Rows final : public ExternalRows {
 
   std::shared_ptr<const Shared> shared_;
   std::array<Layer, 4> layers_;
+  struct Patch {
+    std::int32_t k = -1;
+    std::array<double, std::size_t{side} * side> values;
+  };
+  std::vector<Patch> patches_;  // of the plane at hand, by brick: samples that fields took part in
   struct RunsOfBand {
     std::int32_t z = -1;
     std::vector<CellPeriod::Run> runs;

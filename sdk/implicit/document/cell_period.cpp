@@ -125,18 +125,21 @@ void CellPeriod::sample_part(const PlacedCells& cells, const Grid& grid, const A
   }
 
   BrickSampler sampler(nearness);
-  std::array<double, strut_lanes> xs{}, values{};
+  std::array<double, strut_lanes> xs{};
   for (std::int32_t i = 0; i < side; ++i)
     xs[static_cast<std::size_t>(i)] = grid.coordinate(0, std::min(first[0] + i, last[0]));
-  for (std::int32_t k = first[2]; k <= last[2]; ++k)
-    for (std::int32_t j = first[1]; j <= last[1]; ++j) {
-      const Line line{map * Vec3{0, grid.coordinate(1, j), grid.coordinate(2, k)}, map.linear.column(0)};
-      if (brick.state == Brick::State::mixed)
-        sampler.sample(contents, brick, line, xs.data(), values.data());
-      else
-        values.fill(brick.state == Brick::State::inside ? -nearness.far : nearness.far);
-      std::copy_n(values.data(), last[0] - first[0] + 1, samples_.data() + (row(j, k) - samples_.data()) + first[0]);
-    }
+  std::vector<Line> lines;
+  std::vector<double> values;
+  for (std::int32_t k = first[2]; k <= last[2]; ++k) {
+    lines.clear();
+    for (std::int32_t j = first[1]; j <= last[1]; ++j)
+      lines.push_back({map * Vec3{0, grid.coordinate(1, j), grid.coordinate(2, k)}, map.linear.column(0)});
+    values.assign(lines.size() * strut_lanes, brick.state == Brick::State::inside ? -nearness.far : nearness.far);
+    if (brick.state == Brick::State::mixed) sampler.sample(contents, brick, lines, xs.data(), values.data());
+    for (std::size_t l = 0; l < lines.size(); ++l)
+      std::copy_n(values.data() + l * strut_lanes, last[0] - first[0] + 1,
+                  samples_.data() + (row(first[1] + static_cast<std::int32_t>(l), k) - samples_.data()) + first[0]);
+  }
 }
 
 /// Whether all that the part comes from is there: of each thing at least one of the copies that place it.

@@ -55,7 +55,11 @@ std::unique_ptr<ExternalField::Prepared> PlacedCells::prepare(const Grid& grid, 
 }
 
 std::uint64_t PlacedCells::prepared_bytes(const Grid& grid) const {
-  return index_.repetition() ? CellPeriod::most_bytes(grid.node_count()) : 0;
+  const auto nodes = [&](std::size_t axis) { return static_cast<std::uint64_t>(grid.nodes[axis]); };
+  const bool has_fields = std::any_of(index_.primitives().begin(), index_.primitives().end(),
+                                      [](const Primitive& p) { return !p.is_capsule(); });
+  return (index_.repetition() ? CellPeriod::most_bytes(grid.node_count()) : 0) +
+         (has_fields ? nodes(0) * nodes(1) * sizeof(double) : 0);
 }
 
 }  // namespace meso::implicit

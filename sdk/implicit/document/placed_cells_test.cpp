@@ -131,6 +131,26 @@ TEST(PlacedCells, SamplesOfAGrid) {
   }
 }
 
+/// Of bodies through each other those that are least somewhere in a brick: exactly, deep inside too.
+TEST(PlacedCells, SamplesOfBodiesThroughEachOther) {
+  Numbers number;
+  std::vector<Primitive> all;
+  for (int i = 0; i < 60; ++i)
+    add_field(Field::box({0.9, 0.3, 0.2}).rotated({1, 2, 3}, 0.3 * i).translated(number.point(1.5)), all);
+  all.push_back(strut({-1, 0, 0}, {1, 0.3, 0}, 0.3));
+  const auto cells = std::make_shared<const PlacedCells>(PrimitiveIndex(all, {}), 0.9);
+  const Grid grid{.box = {{-1, -1, -1}, {1, 1, 1}},
+                  .nodes = {129, 129, 129}};  // bricks of 0.1, so the choice is narrow
+  const auto rows = cells->prepare(grid, {}, HUGE_VAL, {})->make_rows();
+  std::vector<double> row(129);
+  for (std::int32_t k = 0; k < 129; k += 16)
+    for (std::int32_t j = 0; j < 129; j += 7) {
+      rows->row(j, k, 0, 129, row.data());
+      for (std::int32_t i = 0; i < 129; ++i)
+        ASSERT_NEAR(row[std::size_t(i)], by_all(all, grid.node(i, j, k), 0.9), 1e-12) << i << " " << j << " " << k;
+    }
+}
+
 /// Points that stand together are asked together: each gets what it gets alone, whether slopes are bounded or not.
 TEST(PlacedCells, NeighboursAreAnsweredAsIfAlone) {
   for (const bool bounded : {true, false}) {

@@ -2,8 +2,8 @@
 #pragma once
 // A term at points, many at a time, by the vector kernels of rows: for leaves that are asked point by point.
 //
-// Values mean what FlatTerm's do, but elementary functions are our own: equal bits on every machine, whichever C library
-// it has, and some times as fast.
+// Values mean what FlatTerm's do, but elementary functions are our own: equal bits on every machine, whichever C
+// library it has, and some times as fast.
 
 #include <memory>
 #include <span>
