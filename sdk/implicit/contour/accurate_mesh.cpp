@@ -97,6 +97,7 @@ class Making {
   [[nodiscard]] static double farthest_on(const Grid& grid);
   bool resolve(Grid grid);
   bool refine();
+  bool take_refined();
   bool simplify();
   void measure(TriangleMesh mesh, bool may_move, double tolerance);
   [[nodiscard]] bool fits(double triangles);
@@ -148,6 +149,7 @@ bool Making::contour_on(const Grid& grid) {
 void Making::measure(TriangleMesh mesh, bool may_move, double tolerance) {
   refinable_.emplace(std::move(mesh), out_.grid.box, *feet_, may_move && is_smooth());
   if (may_move) refinable_->move_vertices(tolerance);
+  if (!is_smooth()) refinable_->measure_points(tolerance);
   refinable_->measure(tolerance);
 }
 
@@ -177,7 +179,7 @@ bool Making::is_affordable(const Grid& coarse) {
   for (std::size_t t = 0; t < mesh.triangles.size(); t += step) {
     const Vec3 a = mesh.points[mesh.triangles[t][0]], b = mesh.points[mesh.triangles[t][1]];
     if (planes_of(coarse.box, a) != 0 || planes_of(coarse.box, b) != 0) continue;
-    middles.push_back({(a + b) / 2, 0, 0});
+    middles.push_back({.point = (a + b) / 2, .most = norm(a - b) / 2});
     halves.push_back(norm(a - b) / 2);
   }
   if (middles.empty()) return true;
@@ -219,7 +221,10 @@ Making::Look Making::look_at(const TriangleMesh& mesh, double spacing) {
       look.astray += 4.0 / static_cast<double>(places.size());
     for (std::size_t side = 0; side < 3; ++side) {
       const std::size_t i = t + side, j = t + (side + 1) % 3;
-      middles.push_back({.point = (places[i] + places[j]) / 2, .slope = std::min(norm(slopes[i]), norm(slopes[j]))});
+      middles.push_back({.point = (places[i] + places[j]) / 2,
+                         .slope = std::min(norm(slopes[i]), norm(slopes[j])),
+                         .ahead = normal,
+                         .most = norm(places[i] - places[j]) / 2});
     }
   }
   feet_->distances(middles, look_near * spacing, distances);
@@ -273,19 +278,22 @@ bool Making::refine() {
   constexpr int most_rounds = 24;
   // What normals tell, and what lies between the points that are looked at, is off by a part of it.
   const double aim = is_smooth() ? 0.7 * options_.tolerance : options_.tolerance;
-  constexpr int patience = 8;
+  const double longer = std::max(1.0, refinable_->distance() / aim);
+  const int patience = 4 + static_cast<int>(std::log2(longer) / 2);  // a round takes distances to a quarter
   std::vector<std::size_t> before;
   for (int round = 0; round < most_rounds; ++round) {
     run_.report("refining", static_cast<double>(round) / most_rounds);
     if (!fits(std::max(refinable_->triangles_for(aim), static_cast<double>(refinable_->mesh().triangles.size()))))
       return false;
+    // Not at once: creases are better.
+    if (round >= 2) refinable_->flip(aim);
     const std::size_t halved = refinable_->refine(aim);
     if (halved == 0 && refinable_->normals_were_right(options_.tolerance)) break;
-    // Where more and more edges are halved, what is refined is no surface.
-    before.push_back(halved);
-    if (round >= patience && halved > before[static_cast<std::size_t>(round - patience)]) break;
     refinable_->measure(aim);
     if (!go_on()) return false;
+    // Where as many edges are halved as before, what is refined is no surface.
+    before.push_back(halved);
+    if (round >= patience && halved >= before[static_cast<std::size_t>(round - 4)]) break;
   }
   return go_on();
 }
@@ -302,12 +310,34 @@ bool Making::to_tolerance(const Grid& first) {
     out_.distance = farthest_on(out_.grid);
     return true;
   }
-  if (!refine()) return false;
-  out_.distance = refinable_->distance();
+  if (!refine() || !take_refined()) return false;
   if (out_.distance > options_.tolerance)
     diagnostics_.report({.code = Code::tolerance_not_reached,
                          .args = {format_number(out_.distance), format_number(options_.tolerance)}});
-  out_.mesh = refinable_->take();
+  return true;
+}
+
+// Where the grid has made a hole through a wall, or a bridge between two, no refining mends that: what is thicker than
+// twice the tolerance has to be seen by the grid. The closest of all meshes is taken. What is missed then is little, so
+// it is not worth any memory and time.
+bool Making::take_refined() {
+  constexpr int most_attempts = 3;
+  constexpr double finer = 1.7, most_triangles = 8e6;
+  AccurateMesh best;
+  for (int attempt = 1;; ++attempt) {
+    const double distance = refinable_->distance();
+    if (attempt == 1 || distance < best.distance)
+      best = {.mesh = refinable_->take(), .grid = out_.grid, .euler = out_.euler, .distance = distance};
+    if (best.distance <= options_.tolerance || attempt == most_attempts) break;
+    const double spacing = largest_spacing(out_.grid);
+    const double triangles = static_cast<double>(best.mesh.triangles.size()) * finer * finer;
+    const double bytes = triangles * static_cast<double>(RefinableMesh::bytes_per_triangle);
+    if (triangles > most_triangles || bytes > static_cast<double>(run_.max_memory_bytes) / 2) break;
+    if (!contour_on(with_spacing(out_.grid.box, spacing / finer))) return false;
+    measure(std::move(out_.mesh), true, options_.tolerance);
+    if (!go_on() || !refine()) return false;
+  }
+  out_ = std::move(best);
   return true;
 }
 

@@ -111,6 +111,94 @@ TEST(AccurateMesh, StaysInTheBoxsPlanes) {
   EXPECT_EQ(audit.degenerate, 0u);
 }
 
+/// Not by the field: from sample points of the mesh to the surface itself, of which the nearest point is known.
+struct Shape {
+  const char* name;
+  Function field;
+  double (*distance)(Vec3);
+};
+
+double from_segment(Vec3 p, Vec3 a, Vec3 b) {
+  return norm(p - a - std::clamp(dot(p - a, b - a) / dot(b - a, b - a), 0.0, 1.0) * (b - a));
+}
+
+// A wedge of 20 degrees, its edge along z.
+constexpr double wedge_slope = 0.36397;  // tan 20 deg
+double wedge(Vec3 p) {
+  return std::max(
+      {-p.y, (p.y - wedge_slope * (p.x + 0.77)) / std::hypot(1, wedge_slope), p.x - 0.71, std::fabs(p.z) - 0.53});
+}
+double off_wedge(Vec3 p) {
+  const auto profile = [](double x, double y) {
+    const Vec3 q{x, y, 0}, tip{-0.77, 0, 0}, low{0.71, 0, 0}, high{0.71, wedge_slope * 1.48, 0};
+    return std::min({from_segment(q, tip, low), from_segment(q, low, high), from_segment(q, high, tip)});
+  };
+  const bool in_profile = p.y > 0 && p.x < 0.71 && p.y < wedge_slope * (p.x + 0.77);
+  const double side = std::fabs(p.z) - 0.53, around = profile(p.x, p.y);
+  if (in_profile) return side > 0 ? side : std::min(around, -side);
+  return side > 0 ? std::hypot(side, around) : around;
+}
+
+// Two spheres that meet in a ring at 50 degrees.
+constexpr double lens_radius = 1.4, lens_offset = 1.269;
+double lens(Vec3 p) {
+  return std::max(norm(p + Vec3{0, 0, lens_offset}) - lens_radius, norm(p - Vec3{0, 0, lens_offset}) - lens_radius);
+}
+double off_lens(Vec3 p) {
+  const double r = std::hypot(p.x, p.y);
+  const double ring = std::sqrt(lens_radius * lens_radius - lens_offset * lens_offset);
+  double nearest = std::hypot(r - ring, p.z);
+  for (const double side : {-1.0, 1.0}) {  // the nearest point of a sphere counts if it is of the lens
+    const double z = p.z + side * lens_offset, length = std::hypot(r, z);
+    if (side * (z / length * lens_radius - side * lens_offset) >= 0)
+      nearest = std::min(nearest, std::fabs(length - lens_radius));
+  }
+  return nearest;
+}
+
+// A cone of 30 degrees to both sides of its axis, cut off below.
+double cone(Vec3 p) {
+  return std::max((std::hypot(p.x, p.y) - (0.83 - p.z) / std::sqrt(3)) * std::sqrt(3) / 2, -0.41 - p.z);
+}
+double off_cone(Vec3 p) {
+  const Vec3 q{std::hypot(p.x, p.y), p.z, 0}, rim{1.24 / std::sqrt(3), -0.41, 0};
+  return std::min(from_segment(q, {0, 0.83, 0}, rim), from_segment(q, {0, -0.41, 0}, rim));
+}
+
+TEST(AccurateMesh, ComesAsCloseToWedgesAndTips) {
+  const auto expect_close = [](const Shape& shape, double tolerance) {
+    const AccurateMesh result = made(shape.field, {.box = cube()}, {.tolerance = tolerance});
+    EXPECT_TRUE(audit_mesh(result.mesh).watertight()) << shape.name;
+    EXPECT_LE(result.distance, tolerance) << shape.name;
+    EXPECT_LE(farthest(result.mesh, shape.distance), 1.15 * tolerance) << shape.name << ' ' << tolerance;
+  };
+  expect_close({"wedge", wedge, off_wedge}, 5e-2);
+  expect_close({"lens", lens, off_lens}, 2e-3);
+  expect_close({"cone", cone, off_cone}, 5e-3);
+}
+
+// A wall that is thinner than a cell is a wall with holes. What is said is no less than what is so.
+TEST(AccurateMesh, SaysNoLessThanItIs) {
+  const auto off_wall = [](Vec3 p) { return std::fabs(std::fabs(norm(p) - 0.75) - 0.03); };
+  const auto wall = [](Vec3 p) { return std::fabs(norm(p) - 0.75) - 0.03; };
+  for (const double tolerance : {2e-2, 5e-3}) {
+    DiagnosticSink diagnostics;
+    const auto result = make_accurate_mesh(on(wall), {.box = cube()}, {.tolerance = tolerance}, {}, diagnostics);
+    ASSERT_TRUE(result);
+    EXPECT_TRUE(audit_mesh(result->mesh).watertight());
+    EXPECT_LE(farthest(result->mesh, off_wall), 1.15 * result->distance);
+  }
+}
+
+// Of two spheres that nearly touch, a coarse grid makes one body: a finer one is taken.
+TEST(AccurateMesh, TakesAFinerGridWhereBridgesAreLeft) {
+  const auto two = [](Vec3 p) { return std::min(norm(p - Vec3{0.43, 0, 0}), norm(p + Vec3{0.43, 0, 0})) - 0.4; };
+  const AccurateMesh result = made(two, {.box = cube()}, {.tolerance = 1e-2, .smallest_feature = 0.125});
+  EXPECT_TRUE(audit_mesh(result.mesh).watertight());
+  EXPECT_EQ(result.euler, 4);
+  EXPECT_LE(farthest(result.mesh, [&](Vec3 p) { return std::fabs(two(p)); }), 1.15e-2);
+}
+
 TEST(AccurateMesh, SimplifiesABoxToItsCorners) {
   const auto box = [](Vec3 p) {
     return std::max({std::fabs(p.x) - 0.61, std::fabs(p.y) - 0.52, std::fabs(p.z) - 0.43});

@@ -49,11 +49,39 @@ void RefinableMesh::move_vertices(double tolerance) {
   }
   std::vector<Foot> feet;
   feet_.feet(off, tolerance / (smooth_ ? 4 : 100), feet);
-  for (std::size_t n = 0; n < which.size(); ++n) {
-    if (feet[n].distance > 2 * static_cast<double>(distances_[which[n]])) continue;  // of another part of the surface
-    mesh_.points[which[n]] = feet[n].point;
-    distances_[which[n]] = 0;
+  std::vector<char> is_there(off.size(), 0), comes_there(off.size(), 1);
+  if (!smooth_) {
+    std::vector<Vec3> before, after, directions;
+    for (std::size_t n = 0; n < off.size(); ++n) {
+      before.push_back(off[n].point), after.push_back(feet[n].point);
+      directions.push_back(within(off[n].planes, off[n].gradient));
+    }
+    feet_.check(before, directions, tolerance / 10, is_there);
+    feet_.check(after, directions, tolerance / 10, comes_there);
   }
+  for (std::size_t n = 0; n < which.size(); ++n) {
+    // A foot that is far away belongs to another part of the surface.
+    const bool near = feet[n].distance <= 2 * static_cast<double>(distances_[which[n]]);
+    if (is_there[n] == 0 && comes_there[n] != 0 && near) mesh_.points[which[n]] = feet[n].point, is_there[n] = 1;
+    if (is_there[n] != 0) distances_[which[n]] = 0;
+  }
+}
+
+void RefinableMesh::measure_points(double tolerance) {
+  std::vector<PointNearSurface> off;
+  std::vector<std::size_t> which;
+  for (std::size_t i = 0; i < distances_.size(); ++i) {
+    if (!(distances_[i] > tolerance / 10)) continue;
+    off.push_back({.point = mesh_.points[i],
+                   .planes = planes_[i],
+                   .slope = norm(gradients_[i]),
+                   .ahead = within(planes_[i], gradients_[i]),
+                   .most = 2 * feet_.cell()});
+    which.push_back(i);
+  }
+  std::vector<double> distances;
+  feet_.distances(off, tolerance, distances);
+  for (std::size_t n = 0; n < which.size(); ++n) distances_[which[n]] = static_cast<float>(distances[n]);
 }
 
 unsigned RefinableMesh::plane_of_triangle(std::uint32_t triangle) const {
@@ -64,6 +92,8 @@ unsigned RefinableMesh::plane_of_triangle(std::uint32_t triangle) const {
 PointNearSurface RefinableMesh::middle_of(std::uint32_t a, std::uint32_t b) const {
   const unsigned planes = planes_[a] & planes_[b];
   PointNearSurface middle{.point = (mesh_.points[a] + mesh_.points[b]) / 2, .planes = planes};
+  middle.most =
+      norm(mesh_.points[a] - mesh_.points[b]) / 2 + static_cast<double>(std::max(distances_[a], distances_[b]));
   if (turns_evenly(a, b))
     middle.gradient = (gradients_[a] + gradients_[b]) / 2;
   else if (planes == 0)  // slopes within a plane of the box may be any smaller
@@ -74,6 +104,8 @@ PointNearSurface RefinableMesh::middle_of(std::uint32_t a, std::uint32_t b) cons
 PointNearSurface RefinableMesh::middle_of(std::uint32_t triangle) const {
   const auto& [a, b, c] = mesh_.triangles[triangle];
   PointNearSurface middle{.point = (mesh_.points[a] + mesh_.points[b] + mesh_.points[c]) / 3};
+  for (const std::uint32_t p : mesh_.triangles[triangle])
+    middle.most = std::min(middle.most, norm(mesh_.points[p] - middle.point) + static_cast<double>(distances_[p]));
   if (turns_evenly(a, b) && turns_evenly(b, c) && turns_evenly(c, a))
     middle.gradient = (gradients_[a] + gradients_[b] + gradients_[c]) / 3;
   else
@@ -84,21 +116,6 @@ PointNearSurface RefinableMesh::middle_of(std::uint32_t triangle) const {
 Vec3 RefinableMesh::normal_of(std::uint32_t triangle) const {
   const auto& [a, b, c] = mesh_.triangles[triangle];
   return cross(mesh_.points[b] - mesh_.points[a], mesh_.points[c] - mesh_.points[a]);
-}
-
-// Beside an edge of the surface, the field may be that of the sheet that is farther away. The mesh's own normal, which
-// comes as the ray's direction, leads to the one before it.
-void RefinableMesh::look_ahead(std::span<Ray> rays, double tolerance, std::vector<double>& distances) {
-  std::vector<Ray> far;
-  std::vector<std::size_t> which;
-  for (std::size_t i = 0; i < rays.size(); ++i) {
-    if (smooth_ || !(distances[i] > tolerance)) continue;
-    far.push_back({rays[i].from, distances[i] / norm(rays[i].along) * rays[i].along});
-    which.push_back(i);
-  }
-  feet_.shoot(far, tolerance / 20);
-  for (std::size_t n = 0; n < far.size(); ++n)
-    if (far[n].hit) distances[which[n]] = std::min(distances[which[n]], norm(far[n].from - rays[which[n]].from));
 }
 
 // Normals at the ends that are up to 60 degrees apart tell what is between them.
@@ -153,7 +170,6 @@ void RefinableMesh::measure_edges(double tolerance) {
     }
   std::sort(edges.begin(), edges.end());
   std::vector<PointNearSurface> asked;
-  std::vector<Ray> rays;
   std::vector<std::pair<std::size_t, Bend>> first_of_asked;
   const auto know = [&](std::size_t e, double distance) {
     for (std::size_t i = e; i < e + 2; ++i)
@@ -174,48 +190,47 @@ void RefinableMesh::measure_edges(double tolerance) {
       }
     }
     asked.push_back(middle_of(edges[e].a, edges[e].b));
-    const Vec3 normal = normal_of(edges[e].triangle) + normal_of(edges[e + 1].triangle);
-    rays.push_back({asked.back().point, within(asked.back().planes, normal)});
+    const Vec3 n0 = normal_of(edges[e].triangle), n1 = normal_of(edges[e + 1].triangle);
+    asked.back().ahead = within(asked.back().planes, n0 / norm(n0) + n1 / norm(n1));
     first_of_asked.push_back({e, bend});
   }
   std::vector<double> distances;
   ask(asked, tolerance, distances);
-  look_ahead(rays, tolerance, distances);
   for (std::size_t i = 0; i < distances.size(); ++i) {
     auto& [edge, bend] = first_of_asked[i];
-    const Edge& e = edges[edge];
-    // No farther than the ends are, and half of the way to them.
-    const double most = norm(mesh_.points[e.a] - mesh_.points[e.b]) / 2 +
-                        static_cast<double>(std::max(distances_[e.a], distances_[e.b]));
-    bend.middle = std::clamp(distances[i], -most, most);
+    bend.middle = std::clamp(distances[i], -asked[i].most, asked[i].most);
     know(edge, bend.farthest());
   }
 }
 
 // Where an edge is to be halved, the middle will be another one. Of a triangle curved as a quadratic function is, the
-// middle is 4/9 of the sum of the edges' distances away.
+// middle is 4/9 of the sum of the edges' distances away; beside an edge of the surface it may be any farther, but not
+// than from the corners.
 void RefinableMesh::measure_middles(double tolerance) {
   std::vector<PointNearSurface> asked;
-  std::vector<Ray> rays;
   std::vector<std::uint32_t> triangles;
   for (std::uint32_t t = 0; t < known_.size(); ++t) {
     const auto& edge = known_[t].edge;
     const auto size = [&](std::size_t side) { return std::fabs(edge[side]); };
     if (known_[t].middle != unknown || std::max({size(0), size(1), size(2)}) > tolerance) continue;
-    const double told = 4.0 / 9 * (smooth_ ? edge[0] + edge[1] + edge[2] : size(0) + size(1) + size(2));
+    const double told = 4.0 / 9 * (edge[0] + edge[1] + edge[2]);
     if (plane_of_triangle(t) != 0) {
       known_[t].middle = 0;
-    } else if (smooth_ ? tells(told, tolerance) : told < 4.0 / 9 * tolerance) {
-      known_[t].middle = smooth_ ? static_cast<float>(told) : 0;
+    } else if (smooth_ && tells(told, tolerance)) {
+      known_[t].middle = static_cast<float>(told);
     } else {
-      asked.push_back(middle_of(t));
-      rays.push_back({asked.back().point, normal_of(t)});
+      const PointNearSurface middle = middle_of(t);
+      if (!smooth_ && middle.most <= tolerance) {
+        known_[t].middle = static_cast<float>(middle.most);
+        continue;
+      }
+      asked.push_back(middle);
+      asked.back().ahead = normal_of(t);
       triangles.push_back(t);
     }
   }
   std::vector<double> distances;
   ask(asked, tolerance, distances);
-  look_ahead(rays, tolerance, distances);
   for (std::size_t i = 0; i < distances.size(); ++i) known_[triangles[i]].middle = static_cast<float>(distances[i]);
 }
 
@@ -240,13 +255,8 @@ bool RefinableMesh::normals_were_right(double tolerance) {
 }
 
 std::size_t RefinableMesh::refine(double tolerance) {
-  struct Cut {
-    Edge edge;
-    float distance;
-    bool operator<(const Cut& c) const { return edge < c.edge; }
-    bool operator==(const Cut& c) const { return edge == c.edge; }
-  };
   std::vector<Cut> cuts;
+  std::vector<std::uint32_t> bridges;
   const auto length = [&](std::uint32_t a, std::uint32_t b) { return norm(mesh_.points[a] - mesh_.points[b]); };
   const auto edge_of = [&](std::uint32_t t, std::size_t side) {
     const std::uint32_t a = mesh_.triangles[t][side], b = mesh_.triangles[t][(side + 1) % 3];
@@ -255,11 +265,15 @@ std::size_t RefinableMesh::refine(double tolerance) {
   for (std::uint32_t t = 0; t < known_.size(); ++t) {
     const auto add = [&](std::size_t side) {
       const Edge e = edge_of(t, side);
-      if (length(e.a, e.b) > tolerance) cuts.push_back({e, known_[t].edge[side]});
+      if (length(e.a, e.b) > tolerance) cuts.push_back({e, known_[t].edge[side], {}});
     };
     for (std::size_t side = 0; side < 3; ++side)
       if (std::fabs(known_[t].edge[side]) > tolerance) add(side);
     if (known_[t].middle == unknown || !(std::fabs(known_[t].middle) > tolerance)) continue;
+    if (is_bridge(t)) {
+      bridges.push_back(t);
+      continue;
+    }
     std::size_t longest = 0;
     const auto side_length = [&](std::size_t side) {
       const Edge e = edge_of(t, side);
@@ -271,7 +285,7 @@ std::size_t RefinableMesh::refine(double tolerance) {
   }
   std::sort(cuts.begin(), cuts.end());
   cuts.erase(std::unique(cuts.begin(), cuts.end()), cuts.end());
-  if (cuts.empty()) return 0;
+  if (cuts.empty() && bridges.empty()) return 0;
   std::vector<PointNearSurface> middles;
   for (const Cut& c : cuts) {
     middles.push_back(middle_of(c.edge.a, c.edge.b));
@@ -284,49 +298,25 @@ std::size_t RefinableMesh::refine(double tolerance) {
   std::vector<Vec3> normals(cuts.size());
   for (std::uint32_t t = 0; t < known_.size(); ++t)
     for (std::size_t side = 0; side < 3; ++side) {
-      const Cut wanted{edge_of(t, side), 0};
+      const Cut wanted{edge_of(t, side), 0, {}};
       const auto found = std::lower_bound(cuts.begin(), cuts.end(), wanted);
       if (found == cuts.end() || !(*found == wanted)) continue;
       halved[t][side] = static_cast<std::uint32_t>(found - cuts.begin());
+      const bool is_first = norm(normals[halved[t][side]]) == 0;
+      found->opposite[is_first ? 0 : 1] = mesh_.triangles[t][(side + 2) % 3];
       normals[halved[t][side]] += normal_of(t);
     }
-  std::vector<Foot> feet;
-  feet_.feet(middles, tolerance / (smooth_ ? 4 : 20), feet);
-  // Where an edge cuts a corner off or goes from sheet to sheet of a wall, the field leads to a foot that is too far,
-  // or beside one of the ends, which would leave another edge as long: what is before the mesh is nearer.
-  std::vector<std::size_t> before;
-  std::vector<Ray> rays;
-  for (std::size_t i = 0; i < cuts.size(); ++i) {
-    if (smooth_ || middles[i].planes != 0) continue;
-    before.push_back(i);
-    rays.push_back({middles[i].point, length(cuts[i].edge.a, cuts[i].edge.b) / norm(normals[i]) * normals[i]});
-  }
-  feet_.shoot(rays, tolerance / 20);
-  for (std::size_t n = 0; n < before.size(); ++n) {
-    Foot& foot = feet[before[n]];
-    const auto [a, b] = std::pair(cuts[before[n]].edge.a, cuts[before[n]].edge.b);
-    const double nearer = std::min(norm(foot.point - mesh_.points[a]), norm(foot.point - mesh_.points[b]));
-    const double ahead = norm(rays[n].from - middles[before[n]].point);
-    if (rays[n].hit && (ahead < foot.distance || nearer < 0.3 * length(a, b)))
-      foot = {rays[n].from, ahead, foot.gradient};
-  }
+  for (std::size_t i = 0; i < cuts.size(); ++i) middles[i].ahead = within(middles[i].planes, normals[i]);
   const auto first = static_cast<std::uint32_t>(mesh_.points.size());
-  for (std::size_t i = 0; i < cuts.size(); ++i) {
-    // A foot that is far away belongs to another part of the surface.
-    const bool near = feet[i].distance < 0.7 * length(cuts[i].edge.a, cuts[i].edge.b);
-    mesh_.points.push_back(near ? feet[i].point : middles[i].point);
-    planes_.push_back(planes_of(box_, mesh_.points.back()));
-    // In a plane of the box, only a part of the gradient was asked for.
-    const bool part = middles[i].planes != 0 && norm(middles[i].gradient) > 0;
-    gradients_.push_back(part ? middles[i].gradient : feet[i].gradient);
-    distances_.push_back(0);
-  }
+  place(cuts, middles, tolerance);
   for (std::uint32_t t = 0; t < halved.size(); ++t) {
     for (std::uint32_t& middle : halved[t])
       if (middle != none) middle += first;
     split(t, halved[t]);
   }
-  return cuts.size();
+  std::erase_if(bridges, [&](std::uint32_t t) { return halved[t] != std::array{none, none, none}; });
+  divide(bridges, tolerance);
+  return cuts.size() + bridges.size();
 }
 
 // Cut at the middles there are: into two, three (by the shorter diagonal) or four.

@@ -27,10 +27,14 @@ class RefinableMesh {
 
   /// Moves vertices that are farther than a tenth of `tolerance` onto the surface.
   void move_vertices(double tolerance);
+  /// Measures how far vertices are that are not on the surface.
+  void measure_points(double tolerance);
   /// Measures what is not known yet; distances that are not near `tolerance` are told roughly.
   void measure(double tolerance);
   /// Halves the edges whose distance is more; returns how many. Call measure() before.
   std::size_t refine(double tolerance);
+  /// Edges whose distance is more get the other diagonal of their two triangles in their place, where that is near.
+  void flip(double tolerance);
   /// Asks at some of the places whose distance was told by normals; true: no more of them was told wrongly than
   /// `tolerance` allows. Else all of them are forgotten, and from now on everything is measured.
   [[nodiscard]] bool normals_were_right(double tolerance);
@@ -66,11 +70,37 @@ class RefinableMesh {
     friend auto operator<=>(const Edge&, const Edge&) = default;
   };
 
+  struct Cut {
+    Edge edge;
+    float distance;
+    std::array<std::uint32_t, 2> opposite{};  ///< corners of the edge's triangles
+    bool operator<(const Cut& c) const { return edge < c.edge; }
+    bool operator==(const Cut& c) const { return edge == c.edge; }
+  };
+
   [[nodiscard]] static float farthest(const Known& known);
   void measure_edges(double tolerance);
   void measure_middles(double tolerance);
   void ask(std::span<const PointNearSurface> points, double tolerance, std::vector<double>& distances);
-  void look_ahead(std::span<Ray> rays, double tolerance, std::vector<double>& distances);
+  // place_points.cpp
+  struct Flip;
+  [[nodiscard]] std::vector<Flip> possible_flips(double tolerance) const;
+  void turn(const Flip& flip, float distance);
+  [[nodiscard]] bool is_bridge(std::uint32_t triangle) const;
+  void divide(std::span<const std::uint32_t> triangles, double tolerance);
+  void take_gradients(std::span<const Foot> feet, std::vector<Vec3>& gradients);
+  void mend_feet(std::span<const PointNearSurface> from, std::span<Foot> feet, double tolerance);
+  void add_points(std::span<const PointNearSurface> from, std::span<Foot> feet, double tolerance);
+  void measure_new_points(std::size_t first, std::span<const Vec3> ways, double tolerance);
+  [[nodiscard]] bool is_beside_end(const Cut& cut, Vec3 place) const;
+  [[nodiscard]] bool is_taken(const Cut& cut, Vec3 place) const;
+  [[nodiscard]] bool is_poor(const Cut& cut, const Foot& foot) const;
+  void look_ahead(std::span<const Cut> cuts, std::span<const PointNearSurface> middles, double tolerance,
+                  std::span<Foot> feet);
+  void look_for_creases(std::span<const Cut> cuts, std::span<const PointNearSurface> middles, double tolerance,
+                        std::span<const char> poor, std::span<Foot> feet);
+  void place(std::span<const Cut> cuts, std::span<const PointNearSurface> middles, double tolerance);
+
   [[nodiscard]] Vec3 normal_of(std::uint32_t triangle) const;
   [[nodiscard]] bool turns_evenly(std::uint32_t a, std::uint32_t b) const;
   [[nodiscard]] Bend bend_along(std::uint32_t a, std::uint32_t b) const;

@@ -56,23 +56,169 @@ void SurfaceFeet::slopes(std::span<const Vec3> points, std::vector<Vec3>& out, s
   }
 }
 
-void SurfaceFeet::distances(std::span<const PointNearSurface> points, double limit, std::vector<double>& out) {
-  constexpr double certainly = 0.7;  // slopes nearby tell the distance to within a third
+// Those whose distance is not known to be less than `limit`; the others' is in `out`, and the values of all in values_.
+std::vector<std::size_t> SurfaceFeet::not_certain(std::span<const PointNearSurface> points, double limit,
+                                                  std::vector<double>& out) {
+  // Slopes nearby tell the distance to within a third, but for wedges: there, by no more than a tenth of the limit, it
+  // is taken on trust.
+  constexpr double likely = 0.7, trusted = 0.1, beyond = 1.25;
   moving_.clear();
   for (const PointNearSurface& p : points) moving_.push_back(p.point);
   ask(moving_, values_);
+  moving_.clear();
   out.resize(points.size());
-  std::vector<PointNearSurface> open;
-  std::vector<std::size_t> place;
+  std::vector<std::size_t> open, probed;
   for (std::size_t i = 0; i < points.size(); ++i) {
-    out[i] = std::fabs(values_[i]) / points[i].slope;
-    if (out[i] <= certainly * limit) continue;  // near an edge, it may be too much by any factor
-    open.push_back(points[i]);
-    place.push_back(i);
+    const PointNearSurface& p = points[i];
+    out[i] = values_[i] == 0 ? 0 : std::fabs(values_[i]) / p.slope;
+    if (out[i] <= trusted * limit) continue;
+    const double length = norm(p.ahead);
+    if (!(out[i] <= likely * limit && length > 0)) {
+      open.push_back(i);
+      continue;
+    }
+    out[i] *= beyond;
+    moving_.push_back(p.point + (values_[i] < 0 ? 1 : -1) * out[i] / length * p.ahead);
+    probed.push_back(i);
   }
+  ask(moving_, beyond_values_);
+  for (std::size_t n = 0; n < probed.size(); ++n)
+    if ((beyond_values_[n] < 0) == (values_[probed[n]] < 0)) open.push_back(probed[n]);
+  return open;
+}
+
+void SurfaceFeet::distances(std::span<const PointNearSurface> points, double limit, std::vector<double>& out) {
+  const std::vector<std::size_t> which = not_certain(points, limit, out);
+  std::vector<PointNearSurface> open;
+  for (const std::size_t i : which) {
+    open.push_back(points[i]);
+    open.back().value = values_[i];
+  }
+  std::vector<double> found;
+  find_distances(open, limit, found);
+  for (std::size_t n = 0; n < which.size(); ++n) out[which[n]] = found[n];
+}
+
+// To the foot and a little beyond; and along the mesh's normal, since beside an edge of the surface, the field may be
+// that of the sheet that is farther away. Where that tells of more than a curved surface would have, all around. Their
+// values are known.
+void SurfaceFeet::find_distances(std::span<const PointNearSurface> points, double limit, std::vector<double>& out) {
+  constexpr double unlikely = 0.3;  // the height of an arc of 70 degrees over half of its chord
   std::vector<Foot> found;
-  feet(open, 0.01 * limit, found);
-  for (std::size_t n = 0; n < found.size(); ++n) out[place[n]] = found[n].distance;
+  feet(points, 0.01 * limit, found);
+  std::vector<Vec3> beyond;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Vec3 way = found[i].point - points[i].point;
+    beyond.push_back(found[i].point + 0.03 * (1 + limit / std::max(norm(way), 1e-6 * limit)) * way);
+    // Over a crease, the way to the one sheet goes along the other.
+    const double length = norm(points[i].ahead);
+    if (length > 0) beyond.back() += (points[i].value < 0 ? 0.03 : -0.03) * limit / length * points[i].ahead;
+  }
+  ask(beyond, beyond_values_);
+  std::vector<Ray> rays;
+  std::vector<std::size_t> which;
+  out.resize(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const bool certain = (beyond_values_[i] < 0) != (points[i].value < 0);
+    out[i] = std::min(points[i].most, certain ? norm(beyond[i] - points[i].point) : HUGE_VAL);
+    const double length = norm(points[i].ahead);
+    if (!(out[i] > limit) || !(length > 0)) continue;
+    const double reach = std::min(out[i], 2 * cell());
+    rays.push_back({points[i].point, reach / length * points[i].ahead});
+    which.push_back(i);
+  }
+  shoot(rays, limit / 20);
+  measure_in_planes(points, limit, out);
+  std::vector<PointNearSurface> lost;
+  std::vector<std::size_t> which_lost;
+  for (std::size_t n = 0; n < rays.size(); ++n) {
+    const std::size_t i = which[n];
+    if (rays[n].hit) out[i] = std::min(out[i], norm(rays[n].from - points[i].point) + limit / 20);
+    if (!(out[i] > limit) || !(out[i] > unlikely * points[i].most) || !std::isfinite(out[i])) continue;
+    lost.push_back(points[i]);
+    lost.back().most = out[i];
+    which_lost.push_back(i);
+  }
+  const std::vector<Ray> found_around = search(lost, limit / 20);
+  for (std::size_t n = 0; n < lost.size(); ++n)
+    if (found_around[n].hit)
+      out[which_lost[n]] = std::min(out[which_lost[n]], norm(found_around[n].from - lost[n].point) + limit / 20);
+}
+
+// Of points on the box's sides that no way within them leads from: where the solid is right behind them, these sides
+// are its surface.
+void SurfaceFeet::measure_in_planes(std::span<const PointNearSurface> points, double limit, std::vector<double>& out) {
+  std::vector<Vec3> behind;
+  std::vector<std::size_t> which;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (points[i].planes == 0 || out[i] < points[i].most) continue;
+    behind.push_back(points[i].point);
+    for (unsigned axis = 0; axis < 3; ++axis) {
+      const unsigned sides = points[i].planes >> 2 * axis & 3U;
+      if (sides != 0) behind.back()[axis] += (sides == 1 ? 1 : -1) * limit / 20;
+    }
+    which.push_back(i);
+  }
+  ask(behind, beyond_values_);
+  for (std::size_t n = 0; n < which.size(); ++n)
+    if (beyond_values_[n] < 0) out[which[n]] = limit / 20;
+}
+
+std::vector<Ray> SurfaceFeet::search(std::span<const PointNearSurface> points, double accuracy) {
+  std::vector<Vec3> directions;
+  for (int n = 0; n < 27; ++n)
+    if (n != 13) directions.push_back({n % 3 - 1.0, n / 3 % 3 - 1.0, n / 9 - 1.0});
+  std::vector<Ray> result, rays;
+  std::vector<std::size_t> open, of_ray;
+  for (const PointNearSurface& p : points) {
+    open.push_back(result.size());
+    result.push_back({p.point, {}});
+  }
+  for (const double share : {0.0625, 0.125, 0.25, 0.5, 1.0}) {
+    moving_.clear();
+    for (const std::size_t i : open) {
+      moving_.push_back(points[i].point);
+      for (const Vec3& d : directions) moving_.push_back(points[i].point + share * points[i].most / norm(d) * d);
+    }
+    ask(moving_, values_);
+    std::size_t at = 0;
+    std::erase_if(open, [&](std::size_t i) {
+      const std::size_t before = rays.size();
+      for (std::size_t d = at + 1; d <= at + directions.size(); ++d) {
+        if ((values_[d] < 0) == (values_[at] < 0)) continue;
+        rays.push_back({points[i].point, (values_[at] < 0 ? 1 : -1) * (moving_[d] - points[i].point)});
+        of_ray.push_back(i);
+      }
+      at += directions.size() + 1;
+      return rays.size() > before;
+    });
+  }
+  shoot(rays, accuracy);
+  const auto far = [&](const Ray& ray, std::size_t i) { return norm(ray.from - points[i].point); };
+  for (std::size_t n = 0; n < rays.size(); ++n) {
+    Ray& best = result[of_ray[n]];
+    if (rays[n].hit && (!best.hit || far(rays[n], of_ray[n]) < far(best, of_ray[n]))) best = rays[n];
+  }
+  return result;
+}
+
+void SurfaceFeet::check(std::span<const Vec3> points, std::span<const Vec3> directions, double accuracy,
+                        std::vector<char>& on_surface) {
+  on_surface.assign(points.size(), 0);
+  for (std::size_t way = 0; way < 4; ++way) {
+    moving_.clear();
+    std::vector<std::size_t> open;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      if (on_surface[i] != 0) continue;
+      Vec3 step = accuracy / norm(directions[i]) * directions[i];
+      if (way > 0) step = {}, step[way - 1] = accuracy;
+      moving_.push_back(points[i] - step), moving_.push_back(points[i] + step);
+      open.push_back(i);
+    }
+    ask(moving_, values_);
+    for (std::size_t n = 0; n < open.size(); ++n)
+      on_surface[open[n]] = (values_[2 * n] < 0) != (values_[2 * n + 1] < 0) ? 1 : 0;
+  }
 }
 
 void SurfaceFeet::shoot(std::span<Ray> rays, double accuracy) {
