@@ -92,7 +92,7 @@ class Making {
     double distance = 0;       ///< few edges are farther
     double triangles_for = 0;  ///< about how many triangles the tolerance takes
   };
-  static constexpr double look_near = 0.27, few = 2e-3, few_astray = 5e-3;
+  static constexpr double look_near = 0.29, few = 2e-3, few_astray = 5e-3;
   Look look_at(const TriangleMesh& mesh, double spacing);
   [[nodiscard]] static double farthest_on(const Grid& grid);
   bool resolve(Grid grid);
@@ -223,7 +223,6 @@ Making::Look Making::look_at(const TriangleMesh& mesh, double spacing) {
       const std::size_t i = t + side, j = t + (side + 1) % 3;
       middles.push_back({.point = (places[i] + places[j]) / 2,
                          .slope = std::min(norm(slopes[i]), norm(slopes[j])),
-                         .ahead = normal,
                          .most = norm(places[i] - places[j]) / 2});
     }
   }

@@ -82,8 +82,13 @@ std::vector<std::size_t> SurfaceFeet::not_certain(std::span<const PointNearSurfa
     probed.push_back(i);
   }
   ask(moving_, beyond_values_);
-  for (std::size_t n = 0; n < probed.size(); ++n)
-    if ((beyond_values_[n] < 0) == (values_[probed[n]] < 0)) open.push_back(probed[n]);
+  for (std::size_t n = 0; n < probed.size(); ++n) {
+    const std::size_t i = probed[n];
+    const double here = std::fabs(values_[i]), there = std::fabs(beyond_values_[n]);
+    if ((beyond_values_[n] < 0) == (values_[i] < 0)) open.push_back(i);
+    // The secant's root; somewhat more, for a field that bends.
+    if (std::isfinite(there)) out[i] *= std::min(1.0, 1.1 * here / (here + there));
+  }
   return open;
 }
 
