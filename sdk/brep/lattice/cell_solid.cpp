@@ -35,8 +35,31 @@ CellPrimitive on_near_walls(const CellPrimitive& primitive, const Box3& box, dou
   return Frustum{moved(strut.start), moved(strut.end), strut.start_radius, strut.end_radius};
 }
 
-/// The seam goes where the box walls cut the ball anyway: fewer edges, and pieces that can be joined again.
+/// The direction in which the thickest strut leaves a ball that no wall cuts.
+std::optional<Vec3> strut_of(const Ball& ball, const CellShape& cell) {
+  for (std::size_t i = 0; i < 3; ++i)
+    if (ball.centre[i] - ball.radius <= cell.box.min[i] || ball.centre[i] + ball.radius >= cell.box.max[i]) return {};
+  std::optional<Vec3> best;
+  double thickest = 0;
+  for (const CellPrimitive& primitive : cell.primitives) {
+    const auto* strut = std::get_if<Frustum>(&primitive);
+    if (strut == nullptr) continue;
+    for (const bool at_end : {false, true}) {
+      const Vec3 away = at_end ? strut->start - strut->end : strut->end - strut->start;
+      const double radius = at_end ? strut->end_radius : strut->start_radius;
+      if (norm((at_end ? strut->end : strut->start) - ball.centre) > cell.tolerance() || radius <= thickest) continue;
+      best = away / norm(away);
+      thickest = radius;
+    }
+  }
+  return best;
+}
+
+/// The seam goes where the box walls cut the ball anyway: fewer edges, and pieces that can be joined again. Where none
+/// does, a pole is hidden in a strut: lines beside it that a body cuts into the ball are followed only up to there.
 TopoDS_Shape to_solid(const Ball& ball, const CellShape& cell) {
+  if (const auto strut = strut_of(ball, cell))
+    return BRepPrimAPI_MakeSphere(gp_Ax2(to_pnt(ball.centre), to_dir(*strut)), ball.radius).Solid();
   const double tolerance = cell.tolerance();
   const bool cut_by_x = on_wall(ball.centre.x, cell.box.min.x, cell.box.max.x, tolerance);
   const bool cut_by_y = on_wall(ball.centre.y, cell.box.min.y, cell.box.max.y, tolerance);

@@ -4,7 +4,13 @@
 
 #include <gtest/gtest.h>
 
+#include <GC_MakeArcOfCircle.hxx>
+#include <random>
+
 #include "boolean.hpp"
+#include "lattice/cell_solid.hpp"
+#include "lattice/primitive_field.hpp"
+#include "solid_primitive.hpp"
 
 namespace meso::brep {
 namespace {
@@ -75,6 +81,52 @@ TEST(CellSplit, AFaceThatIsCutAlongAPartOfALineIsNotTrusted) {
   EXPECT_NEAR(volume_of(right.solid), 27, 1e-9);
   const ClippedCell wrong = split(corner, [](const Box3& face) { return face.max.x > 3; });
   EXPECT_NE(wrong.fault, "");
+}
+
+// The wall of a groove passes beside where a ball's pole was, and the line along which it cuts the ball ended there.
+TEST(CellSplit, PolesOfBallsAreInStruts) {
+  constexpr double size = 3;
+  LatticeCell star_cell{.box = {{0, 0, 0}, {size, size, size}}, .primitives = {Ball{{1.5, 1.5, 1.5}, 0.56}}};
+  for (int i = 0; i < 8; ++i)
+    star_cell.primitives.push_back(
+        Frustum{{i & 1 ? size : 0, i & 2 ? size : 0, i & 4 ? size : 0}, {1.5, 1.5, 1.5}, 0.3, 0.3});
+  const SourceMap source;
+  const RunOptions run;
+  DiagnosticSink sink;
+  const auto shape = cell_shape(star_cell, sink);
+  ASSERT_TRUE(shape);
+  const auto star = fuse(shape->solids, {}, {source, run, sink});
+  ASSERT_TRUE(star && star->size() == 1);
+  const gp_Pnt low(9.3 + 10, 5.7, -5.6), bottom(19.3, 5.7, 0.4), middle(17.8, 5.7, 1.9), top(19.3, 5.7, 3.4),
+      high(19.3, 5.7, 6.4), axis_low(9.3, 5.7, -5.6), axis_high(9.3, 5.7, 6.4);
+  BRepBuilderAPI_MakeWire outline;
+  outline.Add(BRepBuilderAPI_MakeEdge(axis_low, low));
+  outline.Add(BRepBuilderAPI_MakeEdge(low, bottom));
+  outline.Add(BRepBuilderAPI_MakeEdge(GC_MakeArcOfCircle(bottom, middle, top).Value()));
+  outline.Add(BRepBuilderAPI_MakeEdge(top, high));
+  outline.Add(BRepBuilderAPI_MakeEdge(high, axis_high));
+  outline.Add(BRepBuilderAPI_MakeEdge(axis_high, axis_low));
+  const TopoDS_Shape groove =
+      BRepPrimAPI_MakeRevol(BRepBuilderAPI_MakeFace(outline.Wire()).Face(), gp_Ax1(axis_low, gp::DZ())).Shape();
+  WholeCell cell = whole_cell(star->front(), 0.03);
+  LocalBody body = body_of(outward(groove), {}, every_face);
+  body.contains = [](Vec3 p) {
+    const double out = std::hypot(p.x - 9.3, p.y - 5.7), up = p.z - 1.9;
+    return out < 10 && up > -7.5 && up < 4.5 && std::hypot(out - 10, up) > 1.5;
+  };
+  body.side = [contains = body.contains](Vec3 p) { return contains(p) ? 1 : -1; };
+  const ClippedCell part = split_cell(cell, body, {.size = size}, {});
+  ASSERT_EQ(part.left, ClippedCell::Left::part) << part.fault;
+  std::mt19937_64 random(3);
+  std::uniform_real_distribution<double> share(-0.4, size + 0.4);  // struts end across their axes
+  constexpr int count = 200000;
+  int within = 0;
+  for (int i = 0; i < count; ++i) {
+    const Vec3 p{share(random), share(random), share(random)};
+    within += body.contains(p) && signed_distance(star_cell.primitives, p) <= 0 ? 1 : 0;
+  }
+  const double of_box = static_cast<double>(within) / count, box = 3.8 * 3.8 * 3.8;
+  EXPECT_NEAR(volume_of(part.solid), box * of_box, 4 * box * std::sqrt(of_box / count));
 }
 
 }  // namespace
