@@ -11,6 +11,7 @@
 
 #include "face_moments.hpp"
 #include "meso/base/number.hpp"
+#include "point_in_solid.hpp"
 #include "point_within.hpp"
 #include "slabs.hpp"
 #include "stop_watch.hpp"
@@ -112,12 +113,8 @@ class Pieces {
   /// Whether a piece reaches out of an argument it came from, or into another. That happens where surfaces almost
   /// coincide and were not split along each other, and every sum still holds.
   [[nodiscard]] bool misplaced() const {
-    std::vector<Bnd_Box> boxes;
-    std::deque<BRepClass3d_SolidClassifier> classifiers;  // they cannot be moved
-    for (const TopoDS_Shape& argument : arguments_) {
-      BRepBndLib::Add(argument, boxes.emplace_back());
-      classifiers.emplace_back(argument);
-    }
+    std::deque<PointInSolid> arguments;  // they cannot be moved
+    for (const TopoDS_Shape& argument : arguments_) arguments.emplace_back(argument);
     const auto is_owner = [&](const Owners& piece, std::size_t a) {
       return std::ranges::count(piece.arguments, a) > 0;
     };
@@ -125,23 +122,21 @@ class Pieces {
       const Owners& piece = owners_[i];
       const std::vector<Vec3> points = points_within(pieces_(static_cast<int>(i) + 1), points_each);
       for (std::size_t a = 0; a < arguments_.size(); ++a) {
-        const auto is_beyond = [&](Vec3 p) { return boxes[a].IsOut(to_pnt(p)); };
+        const auto is_beyond = [&](Vec3 p) { return arguments[a].is_beyond_box(p); };
         if (is_owner(piece, a) && std::ranges::any_of(points, is_beyond)) return true;
         const auto contradictions = std::ranges::count_if(points, [&](Vec3 p) {
-          if (is_beyond(p)) return false;
-          classifiers[a].Perform(to_pnt(p), Precision::Confusion());
-          return classifiers[a].State() == (is_owner(piece, a) ? TopAbs_OUT : TopAbs_IN);
+          return !is_beyond(p) &&
+                 arguments[a].state(p, Precision::Confusion()) == (is_owner(piece, a) ? TopAbs_OUT : TopAbs_IN);
         });
         if (contradictions >= 2) return true;  // a single classification can fail by chance
       }
     }
-    return reaches_into(TopAbs_EDGE, boxes, classifiers) || reaches_into(TopAbs_FACE, boxes, classifiers);
+    return reaches_into(TopAbs_EDGE, arguments) || reaches_into(TopAbs_FACE, arguments);
   }
 
   /// Whether an edge or a face is within an argument that none of its pieces comes from: a piece has it that should
   /// have been divided, and few of its faces' middles may tell. They may lie on an argument, known as they are.
-  [[nodiscard]] bool reaches_into(TopAbs_ShapeEnum kind, const std::vector<Bnd_Box>& boxes,
-                                  std::deque<BRepClass3d_SolidClassifier>& classifiers) const {
+  [[nodiscard]] bool reaches_into(TopAbs_ShapeEnum kind, std::deque<PointInSolid>& arguments) const {
     TopTools_IndexedMapOfShape parts;
     std::vector<std::vector<std::size_t>> owners;  // per part: the arguments of all its pieces
     for (std::size_t i = 0; i < owners_.size(); ++i)
@@ -154,13 +149,10 @@ class Pieces {
       const TopoDS_Shape& part = parts(static_cast<int>(i) + 1);
       const std::vector<Vec3> points =
           kind == TopAbs_EDGE ? points_along_edges(part, points_an_edge) : points_on_faces(part, points_a_face);
-      for (std::size_t a = 0; a < boxes.size(); ++a) {
+      for (std::size_t a = 0; a < arguments.size(); ++a) {
         if (std::ranges::count(owners[i], a) > 0) continue;
-        const auto within = std::ranges::count_if(points, [&](Vec3 p) {
-          if (boxes[a].IsOut(to_pnt(p))) return false;
-          classifiers[a].Perform(to_pnt(p), 2 * edge_tolerance_mm);
-          return classifiers[a].State() == TopAbs_IN;
-        });
+        const auto within = std::ranges::count_if(
+            points, [&](Vec3 p) { return arguments[a].state(p, 2 * edge_tolerance_mm) == TopAbs_IN; });
         if (within >= 2) return true;
       }
     }

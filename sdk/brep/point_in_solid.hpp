@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// Whether points are in a solid. Private.
+
+#include <BRepClass3d_SolidClassifier.hxx>
+#include <Bnd_Box.hxx>
+#include <optional>
+
+#include "facet_tree.hpp"
+
+namespace meso::brep {
+
+/// Solids of many plane facets are asked by a tree of these, others by OpenCASCADE, which looks at all faces for each
+/// point. Can be neither copied nor moved.
+class PointInSolid {
+ public:
+  /// May throw Standard_Failure.
+  explicit PointInSolid(const TopoDS_Shape& solid);
+  /// Outside, however near.
+  [[nodiscard]] bool is_beyond_box(Vec3 p) const;
+  /// Within `tolerance_mm` of a face: TopAbs_ON.
+  [[nodiscard]] TopAbs_State state(Vec3 p, double tolerance_mm);
+
+ private:
+  Bnd_Box box_;
+  std::optional<FacetTree> facets_;
+  BRepClass3d_SolidClassifier classifier_;
+};
+
+}  // namespace meso::brep
