@@ -18,7 +18,7 @@ class PointInSolid {
   explicit PointInSolid(const TopoDS_Shape& solid);
   /// Outside, however near.
   [[nodiscard]] bool is_beyond_box(Vec3 p) const;
-  /// Within `tolerance_mm` of a face: TopAbs_ON.
+  /// TopAbs_ON: within `tolerance_mm` of a facet, or, where OpenCASCADE is asked, of a face along some line.
   [[nodiscard]] TopAbs_State state(Vec3 p, double tolerance_mm);
 
  private:
