@@ -67,6 +67,14 @@ std::optional<OutputFile> OutputFile::create(const std::string& path, ExistingFi
   return file;
 }
 
+bool OutputFile::can_create(const std::string& path, ExistingFile existing, DiagnosticSink& sink) {
+  std::error_code error;
+  const fs::file_status status = fs::status(path, error);
+  // Opening a pipe waits for its reader, and closing it tells that reader that all is said.
+  const bool is_direct = fs::exists(status) && !fs::is_regular_file(status);
+  return (is_direct && existing == ExistingFile::replace) || create(path, existing, sink);
+}
+
 OutputFile::OutputFile(OutputFile&& other) noexcept
     : path_(std::move(other.path_)),
       target_(std::move(other.target_)),

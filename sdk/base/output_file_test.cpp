@@ -95,6 +95,21 @@ TEST_F(OutputFileTest, RefusesToReplace) {
   EXPECT_EQ(sink_.diagnostics()[0].code, Code::write_exists);
 }
 
+TEST_F(OutputFileTest, CanBeAskedBeforehand) {
+  make("a", "old");
+  EXPECT_TRUE(OutputFile::can_create(path("a"), ExistingFile::replace, sink_));
+  EXPECT_TRUE(OutputFile::can_create(path("b"), ExistingFile::refuse, sink_));
+  EXPECT_TRUE(OutputFile::can_create("/dev/null", ExistingFile::replace, sink_));
+  EXPECT_EQ(sink_.error_count(), 0u);
+  EXPECT_EQ(files(), 1);
+  EXPECT_EQ(content(path("a")), "old");
+  EXPECT_FALSE(OutputFile::can_create(path("a"), ExistingFile::refuse, sink_));
+  EXPECT_FALSE(OutputFile::can_create(path("no/such/a"), ExistingFile::replace, sink_));
+  ASSERT_EQ(sink_.error_count(), 2u);
+  EXPECT_EQ(sink_.diagnostics()[0].code, Code::write_exists);
+  EXPECT_EQ(sink_.diagnostics()[1].code, Code::write_failed);
+}
+
 TEST_F(OutputFileTest, RefusesAFileThatAppearedMeanwhile) {
   auto file = OutputFile::create(path("a"), ExistingFile::refuse, sink_);
   ASSERT_TRUE(file);

@@ -169,7 +169,7 @@ std::optional<BodySample> sample_build(const eval::Evaluation& evaluation, std::
       std::ranges::move(sample->bodies, std::back_inserter(all.bodies));
     } catch (const Standard_Failure& failure) {
       const SolidContext context{evaluation.checked().source(), options.run, sink};
-      context.report(Code::geometry_kernel, part->id_in_source, {"sampling a part", failure.GetMessageString()});
+      context.report(Code::geometry_kernel, part->id_in_source, {"sampling a part", what(failure)});
       return {};
     }
   }

@@ -288,7 +288,7 @@ std::optional<Solids> checked(BOPAlgo_Operation kind, const Solids& objects, con
       }
       if (fault.empty()) fault = result.fault;
     } catch (const Standard_Failure& failure) {
-      if (fault.empty()) fault = failure.GetMessageString();
+      if (fault.empty()) fault = what(failure);
     }
   }
   if (context.run.should_stop())

@@ -117,7 +117,7 @@ std::optional<TopoDS_Shape> to_shape(const Body& body, DiagnosticSink& sink) {
     for (const Solid& solid : body.solids) builder.Add(all, assemble(solid));
     return all;
   } catch (const Standard_Failure& failure) {
-    sink.report({.code = Code::geometry_kernel, .args = {"building a shape", failure.GetMessageString()}});
+    sink.report({.code = Code::geometry_kernel, .args = {"building a shape", what(failure)}});
     return std::nullopt;
   }
 }

@@ -78,6 +78,12 @@
 
 namespace meso::brep {
 
+/// What it says, or its kind where it says nothing.
+[[nodiscard]] inline const char* what(const Standard_Failure& failure) {
+  const char* said = failure.GetMessageString();
+  return said != nullptr && *said != '\0' ? said : failure.DynamicType()->Name();
+}
+
 [[nodiscard]] inline Vec3 to_vec(const gp_XYZ& p) { return {p.X(), p.Y(), p.Z()}; }
 [[nodiscard]] inline Vec3 to_vec(const gp_Pnt& p) { return to_vec(p.XYZ()); }
 [[nodiscard]] inline Vec3 to_vec(const gp_Dir& d) { return to_vec(d.XYZ()); }

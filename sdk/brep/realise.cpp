@@ -350,7 +350,7 @@ std::optional<Realisation> realise(const eval::Evaluation& evaluation, const Par
     result.realise_seconds = seconds_since(start);
     return result;
   } catch (const Standard_Failure& failure) {
-    context.report(Code::geometry_kernel, part.id_in_source, {"realising a part", failure.GetMessageString()});
+    context.report(Code::geometry_kernel, part.id_in_source, {"realising a part", what(failure)});
     return {};
   }
 }
@@ -364,8 +364,7 @@ std::optional<Body> realise_macrostructure(const eval::Evaluation& evaluation, c
   try {
     return to_body(*solids, options, sink);
   } catch (const Standard_Failure& failure) {
-    context.report(Code::geometry_kernel, macrostructure.id_in_source,
-                   {"realising a macrostructure", failure.GetMessageString()});
+    context.report(Code::geometry_kernel, macrostructure.id_in_source, {"realising a macrostructure", what(failure)});
     return {};
   }
 }

@@ -193,7 +193,7 @@ std::optional<Body> shape_to_body(const TopoDS_Shape& shape, const ShapeToBodyOp
   try {
     return BodyBuilder(options, sink).build(shape);
   } catch (const Standard_Failure& failure) {
-    sink.report({.code = Code::geometry_kernel, .args = {"reading a shape", failure.GetMessageString()}});
+    sink.report({.code = Code::geometry_kernel, .args = {"reading a shape", what(failure)}});
     return std::nullopt;
   }
 }

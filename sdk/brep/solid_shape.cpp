@@ -86,7 +86,7 @@ std::optional<Solids> solid_from_shape(const eval::Shape& shape, const Affine& m
   try {
     return std::visit(Builder(map, shape.source, context), shape.value);
   } catch (const Standard_Failure& failure) {
-    context.report(Code::geometry_kernel, shape.source, {"making a solid", failure.GetMessageString()});
+    context.report(Code::geometry_kernel, shape.source, {"making a solid", what(failure)});
     return {};
   }
 }

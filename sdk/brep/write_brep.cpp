@@ -17,7 +17,7 @@ std::optional<std::uint64_t> write_brep(const Body& body, ByteSink& out, Diagnos
     const std::string bytes = std::move(text).str();
     return out.write(bytes) ? std::optional<std::uint64_t>(bytes.size()) : std::nullopt;
   } catch (const Standard_Failure& failure) {
-    sink.report({.code = Code::geometry_kernel, .args = {"writing .brep", failure.GetMessageString()}});
+    sink.report({.code = Code::geometry_kernel, .args = {"writing .brep", what(failure)}});
     return std::nullopt;
   }
 }

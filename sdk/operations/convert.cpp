@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "file_extension.hpp"
+#include "meso/base/output_file.hpp"
 #include "meso/brep/audit.hpp"
 #include "meso/brep/gaps.hpp"
 #include "meso/brep/triangles.hpp"
@@ -187,6 +188,8 @@ std::optional<ConvertReport> convert_to_mesh(const fs::path& in, const fs::path&
 std::optional<ConvertReport> convert(const fs::path& in, const fs::path& out, MakeOptions options,
                                      const WriteOptions& write, DiagnosticSink& sink) {
   if (!fits(out, options, write, sink)) return std::nullopt;
+  const ExistingFile existing = write.no_clobber ? ExistingFile::refuse : ExistingFile::replace;
+  if (!OutputFile::can_create(out.string(), existing, sink)) return std::nullopt;
   options.mesh = *output_needs_mesh(out);
   return !options.mesh || options.engine == Engine::brep ? convert_exactly(in, out, options, write, sink)
                                                          : convert_to_mesh(in, out, options, write, sink);

@@ -65,7 +65,7 @@ ClippedCell CellClipper::clip(std::uint32_t kind, const Index3& cell, const std:
       if (made.fault.empty() && (!best || made.edge_tolerance < best->edge_tolerance)) best = made;
       if (fault.empty()) fault = made.fault;
     } catch (const Standard_Failure& failure) {
-      if (fault.empty()) fault = failure.GetMessageString();
+      if (fault.empty()) fault = what(failure);
     }
   }
   if (run_.should_stop()) return {.fault = "stopped"};

@@ -235,7 +235,7 @@ std::optional<CellShape> cell_shape(const LatticeCell& cell, DiagnosticSink& sin
       shape.solids.push_back(std::visit([&](const auto& p) { return to_solid(p, shape); }, primitive));
     }
   } catch (const Standard_Failure& failure) {
-    sink.report({.code = Code::geometry_not_repeatable, .args = {failure.GetMessageString()}});
+    sink.report({.code = Code::geometry_not_repeatable, .args = {what(failure)}});
     return {};
   }
   return shape;
@@ -370,7 +370,7 @@ std::optional<TopoDS_Shape> solid_in_box(const CellShape& cell, const Reach& rea
   const char* fault = nullptr;
   for (const double fuzzy : {least, cell.tolerance() / 2})
     if (auto inside = fused_in_box(solids, primitives, cell, fuzzy, run, fault)) return inside;
-  sink.report({.code = Code::geometry_not_repeatable, .args = {fault}});
+  if (!run.should_stop()) sink.report({.code = Code::geometry_not_repeatable, .args = {fault}});
   return {};
 }
 

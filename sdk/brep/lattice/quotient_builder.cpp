@@ -326,7 +326,7 @@ std::optional<Quotient> build_quotient(const CellShape& cell, const std::vector<
     if (!builder.add_faces(run)) fault = "the unit cell is not a manifold inside its box";
     if (fault.empty()) find_natural_faces(quotient);
   } catch (const Standard_Failure& failure) {
-    fault = std::string("the faces of the unit cell cannot be read: ") + failure.GetMessageString();
+    fault = std::string("the faces of the unit cell cannot be read: ") + what(failure);
   }
   if (fault.empty()) return quotient;
   sink.report({.code = Code::geometry_not_repeatable, .args = {fault}});

@@ -25,6 +25,8 @@ class OutputFile final : public ByteSink {
  public:
   [[nodiscard]] static std::optional<OutputFile> create(const std::string& path, ExistingFile existing,
                                                         DiagnosticSink& sink);
+  /// Whether create() would succeed, with its diagnostics if not: to ask before work that takes long. Leaves nothing.
+  [[nodiscard]] static bool can_create(const std::string& path, ExistingFile existing, DiagnosticSink& sink);
   OutputFile(OutputFile&& other) noexcept;
   OutputFile& operator=(OutputFile&&) = delete;
   ~OutputFile() override;
