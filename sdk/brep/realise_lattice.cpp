@@ -301,6 +301,28 @@ Thickness strut_thickness(const eval::CellStream& cells, DiagnosticSink& sink) {
   return out;
 }
 
+namespace {
+
+/// Where a line of a body ends in the pole of a ball, a second attempt keeps poles out of the cell.
+std::optional<ClippedLattice> clipped_lattice(const Found& found, const Index3& last,
+                                              const std::optional<MeshFineness>& mesh, const SolidContext& context) {
+  const auto attempt = [&](const CellShape& cell, DiagnosticSink& sink) {
+    return clipped_lattice_body(cell, last, found.body, {.mesh = mesh, .reuse = true}, context.run, sink);
+  };
+  DiagnosticSink first, second;
+  auto made = attempt(found.cell, first);
+  bool is_second = false;
+  if (!made && !context.run.should_stop())
+    if (const auto cell = with_poles_aside(found.cell)) {
+      made = attempt(*cell, second);
+      is_second = made.has_value();
+    }
+  for (const Diagnostic& d : (is_second ? second : first).diagnostics()) context.sink.report(d);
+  return made;
+}
+
+}  // namespace
+
 std::optional<LatticePart> lattice_part(const Solids& macrostructure, const eval::CellStream& cells,
                                         const std::optional<CellRule>& whole_cells,
                                         const std::optional<MeshFineness>& mesh, const SolidContext& context) {
@@ -333,8 +355,7 @@ std::optional<LatticePart> lattice_part(const Solids& macrostructure, const eval
     if (!body) return {};
     out.body = std::move(*body);
   } else {
-    auto clipped =
-        clipped_lattice_body(found->cell, last, found->body, {.mesh = mesh, .reuse = true}, context.run, context.sink);
+    auto clipped = clipped_lattice(*found, last, mesh, context);
     if (!clipped) return {};
     out = {std::move(clipped->body), clipped->kept, clipped->crossing, std::move(clipped->clip)};
   }

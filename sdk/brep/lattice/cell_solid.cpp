@@ -55,16 +55,32 @@ std::optional<Vec3> strut_of(const Ball& ball, const CellShape& cell) {
   return best;
 }
 
-/// The seam goes where the box walls cut the ball anyway: fewer edges, and pieces that can be joined again. Where none
-/// does, a pole is hidden in a strut: lines beside it that a body cuts into the ball are followed only up to there.
+/// The seam goes where the box walls cut the ball anyway: fewer edges, and pieces that can be joined again.
 TopoDS_Shape to_solid(const Ball& ball, const CellShape& cell) {
-  if (const auto strut = strut_of(ball, cell))
-    return BRepPrimAPI_MakeSphere(gp_Ax2(to_pnt(ball.centre), to_dir(*strut)), ball.radius).Solid();
   const double tolerance = cell.tolerance();
   const bool cut_by_x = on_wall(ball.centre.x, cell.box.min.x, cell.box.max.x, tolerance);
   const bool cut_by_y = on_wall(ball.centre.y, cell.box.min.y, cell.box.max.y, tolerance);
   const gp_Dir seam = cut_by_x && !cut_by_y ? gp::DY() : gp::DX();
   return BRepPrimAPI_MakeSphere(gp_Ax2(to_pnt(ball.centre), gp::DZ(), seam), ball.radius).Solid();
+}
+
+/// Lines that a body cuts into a ball are followed only up to a pole beside them. What two walls or three leave of a
+/// ball can do without poles and seam, which go to the other side; where no wall cuts it, a pole is hidden in a strut.
+std::optional<TopoDS_Shape> with_poles_aside(const Ball& ball, const CellShape& cell) {
+  if (const auto strut = strut_of(ball, cell))
+    return BRepPrimAPI_MakeSphere(gp_Ax2(to_pnt(ball.centre), to_dir(*strut)), ball.radius).Solid();
+  Vec3 inwards;
+  std::vector<std::size_t> cuts;
+  for (std::size_t i = 0; i < 3; ++i)
+    if (on_wall(ball.centre[i], cell.box.min[i], cell.box.max[i], cell.tolerance())) {
+      inwards[i] = ball.centre[i] < (cell.box.min[i] + cell.box.max[i]) / 2 ? 1 : -1;
+      cuts.push_back(i);
+    }
+  if (cuts.size() < 2) return {};
+  Vec3 pole;
+  pole[cuts[0]] = inwards[cuts[0]];
+  pole[cuts[1]] = -inwards[cuts[1]];
+  return BRepPrimAPI_MakeSphere(gp_Ax2(to_pnt(ball.centre), to_dir(pole), to_dir(-inwards)), ball.radius).Solid();
 }
 
 /// Struts of neighbouring cells must be split alike, so direction and seam depend on the line, not on how it is
@@ -239,6 +255,23 @@ std::optional<CellShape> cell_shape(const LatticeCell& cell, DiagnosticSink& sin
     return {};
   }
   return shape;
+}
+
+std::optional<CellShape> with_poles_aside(const CellShape& cell) {
+  CellShape out = cell;
+  bool has_changed = false;
+  try {
+    for (std::size_t i = 0; i < cell.primitives.size(); ++i)
+      if (const auto* ball = std::get_if<Ball>(&cell.primitives[i]))
+        if (auto solid = with_poles_aside(*ball, cell)) {
+          out.solids[i] = std::move(*solid);
+          has_changed = true;
+        }
+  } catch (const Standard_Failure&) {
+    return {};
+  }
+  if (!has_changed) return {};
+  return out;
 }
 
 std::vector<std::uint32_t> Reach::parts_with(bool itself, std::uint64_t present) const {

@@ -28,6 +28,10 @@ struct CellShape {
 
 [[nodiscard]] std::optional<CellShape> cell_shape(const LatticeCell& cell, DiagnosticSink& sink);
 
+/// The same set of points with the poles of balls hidden or left out, if that can be done for any. What a body cuts
+/// into balls is found more surely; pieces of one ball are not joined, and files are larger.
+[[nodiscard]] std::optional<CellShape> with_poles_aside(const CellShape& cell);
+
 /// Which solids of which cells shape the inside of one box.
 struct Reach {
   struct Part {
