@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Faceted bodies with copies of themselves inside. Which copies are inside is counted again without a tree, by solid
 // angles and all pairs; volumes are V (1 - n s^3).
+#include <filesystem>
 #include <fstream>
 #include <numbers>
 
@@ -109,13 +110,15 @@ class Enclosed : public RealiseTest {
     file << "endsolid\n";
     file.close();
     const std::string import = "<import href=\"" + name + "\" unit=\"millimeter\"";
-    return realised("<parameters><parameter id=\"s\" value=\"" + scale +
-                    "\"/></parameters><macrostructures><macrostructure id=\"m\">" + import +
-                    "/></macrostructure></macrostructures><unitCells><unitCell id=\"u\">" + import +
-                    "><transform matrix=\"s,0,0,0, 0,s,0,0, 0,0,s,0\"/></import></unitCell></unitCells>"
-                    "<patterns><pattern id=\"c\" unitCell=\"u\">" +
-                    generator + "</pattern></patterns>" +
-                    part("<apply pattern=\"c\" operation=\"difference\" " + rule + "/>"));
+    auto made = realised("<parameters><parameter id=\"s\" value=\"" + scale +
+                         "\"/></parameters><macrostructures><macrostructure id=\"m\">" + import +
+                         "/></macrostructure></macrostructures><unitCells><unitCell id=\"u\">" + import +
+                         "><transform matrix=\"s,0,0,0, 0,s,0,0, 0,0,s,0\"/></import></unitCell></unitCells>"
+                         "<patterns><pattern id=\"c\" unitCell=\"u\">" +
+                         generator + "</pattern></patterns>" +
+                         part("<apply pattern=\"c\" operation=\"difference\" " + rule + "/>"));
+    std::filesystem::remove(name);
+    return made;
   }
 };
 

@@ -6,19 +6,10 @@
 #include <cmath>
 
 #include "cell_primitives.hpp"
-#include "primitive.hpp"
+#include "primitive_for_test.hpp"
 
 namespace meso::implicit {
 namespace {
-
-Primitive strut(Vec3 from, Vec3 to, double radius) {
-  Primitive p{.capsule = capsule(from, to, radius)};
-  for (const Vec3 end : {from, to}) {
-    p.box.extend(end - Vec3{radius, radius, radius});
-    p.box.extend(end + Vec3{radius, radius, radius});
-  }
-  return p;
-}
 
 /// A body-centred cell of 1 mm with thicker nodes; neighbours both place those that they share. `extra`: a cone in it.
 std::vector<Primitive> cell(bool extra) {

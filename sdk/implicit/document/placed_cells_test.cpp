@@ -8,6 +8,7 @@
 #include "cell_primitives.hpp"
 #include "meso/implicit/compile.hpp"
 #include "meso/implicit/document_field.hpp"
+#include "primitive_for_test.hpp"
 #include "strut_rows.hpp"
 
 namespace meso::implicit {
@@ -21,15 +22,6 @@ class Numbers {
  private:
   std::mt19937_64 random_{7};
 };
-
-Primitive strut(Vec3 from, Vec3 to, double radius) {
-  Primitive p{.capsule = capsule(from, to, radius)};
-  for (const Vec3 end : {from, to}) {
-    p.box.extend(end - Vec3{radius, radius, radius});
-    p.box.extend(end + Vec3{radius, radius, radius});
-  }
-  return p;
-}
 
 std::vector<Primitive> some_primitives(Numbers& number, int count, double reach) {
   std::vector<Primitive> result;
