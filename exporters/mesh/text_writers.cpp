@@ -2,33 +2,13 @@
 #include "text_writers.hpp"
 
 #include <array>
-#include <charconv>
 #include <cstdio>
 #include <string>
 
+#include "number_lines.hpp"
+
 namespace meso {
 namespace {
-
-constexpr std::size_t longest_number = 24;
-
-// `lead`, then three numbers with blanks between them.
-template <class Number>
-void put_line(std::string_view lead, const std::array<Number, 3>& numbers, ByteBuffer& out) {
-  char* const begin = out.claim(lead.size() + 3 * (longest_number + 1));
-  char* to = begin + lead.copy(begin, lead.size());
-  for (const Number n : numbers) {
-    to = std::to_chars(to, to + longest_number, n).ptr;
-    *to++ = ' ';
-  }
-  to[-1] = '\n';
-  out.advance(static_cast<std::size_t>(to - begin));
-}
-
-template <class Real>
-void put_points(std::span<const Vec3> block, std::string_view lead, ByteBuffer& out) {
-  const auto real = [](double c) { return static_cast<Real>(c) + Real{0}; };  // + 0: one zero, not two
-  for (const Vec3& p : block) put_line(lead, std::array{real(p.x), real(p.y), real(p.z)}, out);
-}
 
 // Fixed width, because the counts are known late: readers skip blanks.
 std::string off_header(std::uint64_t points, std::uint64_t triangles) {
@@ -47,12 +27,13 @@ bool ObjWriter<Real>::begin() {
 
 template <class Real>
 void ObjWriter<Real>::encode_points(std::span<const Vec3> block, ByteBuffer& out) const {
-  put_points<Real>(block, "v ", out);
+  put_points<Real>({"v ", " ", " ", "\n"}, block, out);
 }
 
 template <class Real>
 void ObjWriter<Real>::encode_triangles(std::span<const IndexTriangle> block, ByteBuffer& out) const {
-  for (const IndexTriangle& t : block) put_line("f ", std::array{t[0] + 1, t[1] + 1, t[2] + 1}, out);  // from 1 on
+  for (const IndexTriangle& t : block)
+    put_line({"f ", " ", " ", "\n"}, std::array{t[0] + 1, t[1] + 1, t[2] + 1}, out);  // from 1 on
 }
 
 template <class Real>
@@ -67,12 +48,12 @@ bool OffWriter<Real>::begin() {
 
 template <class Real>
 void OffWriter<Real>::encode_points(std::span<const Vec3> block, ByteBuffer& out) const {
-  put_points<Real>(block, "", out);
+  put_points<Real>({"", " ", " ", "\n"}, block, out);
 }
 
 template <class Real>
 void OffWriter<Real>::encode_triangles(std::span<const IndexTriangle> block, ByteBuffer& out) const {
-  for (const IndexTriangle& t : block) put_line("3 ", t, out);
+  for (const IndexTriangle& t : block) put_line({"3 ", " ", " ", "\n"}, t, out);
 }
 
 template <class Real>

@@ -143,7 +143,7 @@ int convert_verb(Run& run, const std::string& in, const std::string& out, const 
 
 void add_convert(CLI::App& app, Run& run) {
   CLI::App* verb = app.add_subcommand(
-      "convert", "Realise a document: .step .stp .brep .stl .ply .obj .off .vtk by the output's extension");
+      "convert", "Realise a document: .step .stp .brep .stl .3mf .ply .obj .off .vtk by the output's extension");
   static std::string in, out;
   static ConvertFlags flags;
   verb->add_option("IN", in, "Document (.meso, .mesoz)")->required();

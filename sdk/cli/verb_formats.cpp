@@ -29,6 +29,9 @@ constexpr Format formats[] = {
     {".stl", "STL, binary or --ascii", true, true, "triangles, read and written by sdf"},
 #endif
 #ifdef MESO_CLI_IMPLICIT
+#ifdef MESO_CLI_PACKAGES
+    {".3mf", "3MF, one mesh in millimetres", false, true, "triangles, written by convert and sdf"},
+#endif
     {".ply", "PLY, binary", true, true, "triangles, read and written by sdf"},
     {".obj", "Wavefront OBJ", true, true, "triangles, read and written by sdf"},
     {".off", "Object File Format", true, true, "triangles, read and written by sdf"},

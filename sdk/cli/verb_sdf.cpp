@@ -22,7 +22,7 @@ namespace meso::cli {
 namespace {
 
 constexpr const char* description =
-    "A solid in the command language of docs/sdf.md as a mesh: .ply .stl .obj .off .vtk";
+    "A solid in the command language of docs/sdf.md as a mesh: .ply .stl .3mf .obj .off .vtk";
 
 /// The flags that are ours; everything else is a word.
 void add_flags(CLI::App& flags, Run& run, operations::SdfOptions& options) {
@@ -74,7 +74,7 @@ void print_help(const CLI::App& flags) {
   fmt::print(" {}\n\nOptions, anywhere; the last of equals counts:\n", names);
   line("-b", "x0,y0,z0,x1,y1,z1", "the box (the solid's own, unbounded sides at -1 and 1)");
   line("-s", "n | nx,ny,nz", "samples in all, or along the axes (100^3)");
-  line("-o", "PATH", "the mesh: .ply .stl .obj .off .vtk (out.ply); .vtu .msh .inp .nrrd .vti .h5 .svg .png");
+  line("-o", "PATH", "the mesh: .ply .stl .3mf .obj .off .vtk (out.ply); .vtu .msh .inp .nrrd .vti .h5 .svg .png");
   line("", "", "or the same design as a document: .meso");
   line("--print DOCUMENT", "", "the words that make the same mesh, instead of a mesh");
   line("@PATH", "", "the words of that file");

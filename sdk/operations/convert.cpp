@@ -8,6 +8,7 @@
 #include "meso/brep/audit.hpp"
 #include "meso/brep/gaps.hpp"
 #include "meso/brep/triangles.hpp"
+#include "meso/export_mesh/mesh_writer.hpp"
 #ifdef MESO_WITH_IMPLICIT_ENGINE
 #include "make_mesh.hpp"
 #endif
@@ -44,8 +45,8 @@ bool fits(const fs::path& out, const MakeOptions& options, const WriteOptions& w
   };
   const auto needs_mesh = output_needs_mesh(out);
   if (!needs_mesh)
-    return refuse("'" + out.string() +
-                  "': no format has this extension; convert writes .step .stp .brep, and .stl .ply .obj .off .vtk");
+    return refuse("'" + out.string() + "': no format has this extension; convert writes .step .stp .brep, and " +
+                  std::string(mesh_extensions()));
   const bool fine = options.deflection_mm || options.angle_rad,
              samples = options.spacing_mm || !options.samples.empty();
   if (!*needs_mesh && fine) return refuse("--deflection and --angle have an effect for meshes only");

@@ -13,7 +13,7 @@
 namespace meso::operations {
 
 bool is_mesh_file(const std::filesystem::path& file) {
-  static constexpr std::string_view extensions[] = {".stl", ".ply", ".obj", ".off", ".vtk"};
+  static constexpr std::string_view extensions[] = {".stl", ".ply", ".obj", ".off", ".vtk", ".3mf"};
   return std::ranges::find(extensions, lower_extension(file)) != std::end(extensions);
 }
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <cerrno>
 #include <cstdlib>
 #include <system_error>
 
@@ -104,6 +105,7 @@ std::optional<Written> write_body(const brep::Body& body, const std::filesystem:
   }
   auto out = OutputFile::create(file.string(), options.no_clobber ? ExistingFile::refuse : ExistingFile::replace, sink);
   if (!out) return std::nullopt;
+  const std::size_t errors = sink.error_count();
   StoppableSink stoppable(*out, options.run);
   auto written = *format == Format::mesh ? write_shared_mesh(body, file, *out)
                                          : write_format(*format, body, file.stem().string(), options, stoppable, sink);
@@ -111,7 +113,9 @@ std::optional<Written> write_body(const brep::Body& body, const std::filesystem:
     sink.report({.code = options.run.out_of_time() ? Code::limit_time : Code::cancelled});
     return std::nullopt;
   }
-  if (!written || !out->commit(sink)) return std::nullopt;
+  if (!written && sink.error_count() > errors) return std::nullopt;
+  if (!written) (void)out->fail(EIO);  // unless the file knows better
+  if (!out->commit(sink)) return std::nullopt;
   std::error_code error;
   if (written->bytes == 0) written->bytes = std::filesystem::file_size(file, error);
   return written;

@@ -8,9 +8,9 @@
 //
 // Coordinates are 32-bit floats or, where it is asked for, doubles (not of STL, whose binary form has floats only).
 // Text has the shortest numbers that read back as the same float or double. All but the STL formats, which have no
-// shared points, take constant memory. A file that failed says so at OutputFile::commit(); formats that count ahead
-// (all but OBJ and ASCII STL) cannot be written to a pipe. Equal meshes give equal bytes, however they are cut into
-// blocks.
+// shared points, take constant memory; 3MF is compressed at the end, out of a temporary file. A file that failed says
+// so at OutputFile::commit(); formats that count ahead (all but OBJ and ASCII STL) cannot be written to a pipe. Equal
+// meshes give equal bytes, however they are cut into blocks.
 
 #include <memory>
 #include <optional>
@@ -21,10 +21,13 @@
 
 namespace meso {
 
-enum class MeshFormat { ply, stl, stl_ascii, obj, off, vtk };
+enum class MeshFormat { ply, stl, stl_ascii, obj, off, vtk, threemf };
 enum class Coordinates { as_float, as_double };
 
-/// By the ending of a file's name, upper or lower case: .ply .stl .obj .off .vtk.
+/// ".stl .3mf .ply .obj .off .vtk", for messages; .3mf where the library is built with libzip.
+[[nodiscard]] std::string_view mesh_extensions();
+
+/// By the ending of a file's name, upper or lower case: one of mesh_extensions().
 [[nodiscard]] std::optional<MeshFormat> mesh_format_of(std::string_view path);
 
 [[nodiscard]] constexpr bool can_hold_doubles(MeshFormat format) {
