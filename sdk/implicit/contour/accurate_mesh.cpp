@@ -154,7 +154,8 @@ void Making::measure(TriangleMesh mesh, bool may_move, double tolerance) {
 }
 
 bool Making::fits(double triangles) {
-  const double bytes = triangles * static_cast<double>(RefinableMesh::bytes_per_triangle);
+  constexpr double beside = 40 << 20;  // the program, and points that are asked at a time
+  const double bytes = beside + triangles * static_cast<double>(RefinableMesh::bytes_per_triangle);
   if (bytes <= static_cast<double>(run_.max_memory_bytes)) return true;
   diagnostics_.report(
       {.code = Code::limit_tolerance,
@@ -247,6 +248,8 @@ double Making::farthest_on(const Grid& grid) {
 // spacing, which tells how fine the next one must be.
 bool Making::resolve(Grid grid) {
   constexpr int most_grids_of_nothing = 4;
+  Look before{.astray = 1};
+  double spacing_before = HUGE_VAL;
   for (int nothing = 0;;) {
     const double spacing = largest_spacing(grid);
     if (!contour_on(grid)) return false;
@@ -258,7 +261,12 @@ bool Making::resolve(Grid grid) {
     if (farthest_on(grid) <= options_.tolerance) return go_on();
     const Look look = look_at(out_.mesh, spacing);
     if (!go_on()) return false;
-    const bool follows = look.astray <= few_astray;
+    // What goes astray beside edges of the surface is a share that goes with the spacing; it is refined where it is.
+    // What is too thin for the grid is gone on a grid that is finer.
+    const bool only_edges = !is_smooth() && look.astray <= 4 * few_astray &&
+                            look.astray > before.astray * std::pow(spacing / spacing_before, 1.5);
+    const bool follows = look.astray <= few_astray || only_edges;
+    before = look, spacing_before = spacing;
     // Where the field has kinks that no grid resolves, a finer one only costs: what it would add, refining adds where
     // it is needed.
     const double triangles = static_cast<double>(out_.mesh.triangles.size()) * (is_smooth() ? 1 : 4);
@@ -269,6 +277,7 @@ bool Making::resolve(Grid grid) {
                                  : std::clamp(std::sqrt(look.astray / few_astray), 1.4, 2.0);
     grid = with_spacing(grid.box, spacing / finer);
   }
+  if (!fits(static_cast<double>(out_.mesh.triangles.size()))) return false;
   measure(std::move(out_.mesh), true, options_.tolerance);
   return go_on();
 }
@@ -320,8 +329,8 @@ bool Making::to_tolerance(const Grid& first) {
 // twice the tolerance has to be seen by the grid. The closest of all meshes is taken. What is missed then is little, so
 // it is not worth any memory and time.
 bool Making::take_refined() {
-  constexpr int most_attempts = 3;
-  constexpr double finer = 1.7, most_triangles = 8e6;
+  constexpr int most_attempts = 4;
+  constexpr double most_triangles = 8e6, least_finer = 1.3, usual_finer = 1.7, most_finer = 3;
   AccurateMesh best;
   for (int attempt = 1;; ++attempt) {
     const double distance = refinable_->distance();
@@ -329,9 +338,12 @@ bool Making::take_refined() {
       best = {.mesh = refinable_->take(), .grid = out_.grid, .euler = out_.euler, .distance = distance};
     if (best.distance <= options_.tolerance || attempt == most_attempts) break;
     const double spacing = largest_spacing(out_.grid);
-    const double triangles = static_cast<double>(best.mesh.triangles.size()) * finer * finer;
-    const double bytes = triangles * static_cast<double>(RefinableMesh::bytes_per_triangle);
-    if (triangles > most_triangles || bytes > static_cast<double>(run_.max_memory_bytes) / 2) break;
+    // What is left goes with the spacing, triangles with its square.
+    const double affordable =
+        std::min(most_triangles, static_cast<double>(run_.max_memory_bytes / RefinableMesh::bytes_per_triangle) / 2);
+    const double finer = std::min(std::clamp(1.2 * distance / options_.tolerance, usual_finer, most_finer),
+                                  std::sqrt(affordable / static_cast<double>(best.mesh.triangles.size())));
+    if (finer < least_finer) break;
     if (!contour_on(with_spacing(out_.grid.box, spacing / finer))) return false;
     measure(std::move(out_.mesh), true, options_.tolerance);
     if (!go_on() || !refine()) return false;

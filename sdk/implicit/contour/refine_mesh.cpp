@@ -16,6 +16,9 @@ constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
 // above 1 / `surely` times.
 constexpr double surely = 0.4;
 
+// What is asked of a point takes more memory than a triangle: so many points at a time.
+constexpr std::size_t asked_at_once = 1 << 14;
+
 bool tells(double distance, double tolerance) {
   return std::fabs(distance) <= surely * tolerance || std::fabs(distance) >= tolerance / surely;
 }
@@ -40,13 +43,17 @@ RefinableMesh::RefinableMesh(TriangleMesh mesh, const Box3& box, SurfaceFeet& fe
 }
 
 void RefinableMesh::move_vertices(double tolerance) {
-  std::vector<PointNearSurface> off;
   std::vector<std::size_t> which;
-  for (std::size_t i = 0; i < distances_.size(); ++i) {
-    if (!(distances_[i] > tolerance / 10)) continue;
+  for (std::size_t i = 0; i < distances_.size(); ++i)
+    if (distances_[i] > tolerance / 10) which.push_back(i);
+  for (std::size_t first = 0; first < which.size(); first += asked_at_once)
+    move_onto_surface(std::span(which).subspan(first, std::min(asked_at_once, which.size() - first)), tolerance);
+}
+
+void RefinableMesh::move_onto_surface(std::span<const std::size_t> which, double tolerance) {
+  std::vector<PointNearSurface> off;
+  for (const std::size_t i : which)
     off.push_back({.point = mesh_.points[i], .planes = planes_[i], .gradient = gradients_[i], .value = values_[i]});
-    which.push_back(i);
-  }
   std::vector<Foot> feet;
   feet_.feet(off, tolerance / (smooth_ ? 4 : 100), feet);
   std::vector<char> is_there(off.size(), 0), comes_there(off.size(), 1);
@@ -70,6 +77,12 @@ void RefinableMesh::move_vertices(double tolerance) {
 void RefinableMesh::measure_points(double tolerance) {
   std::vector<PointNearSurface> off;
   std::vector<std::size_t> which;
+  std::vector<double> distances;
+  const auto know = [&] {
+    feet_.distances(off, tolerance, distances);
+    for (std::size_t n = 0; n < which.size(); ++n) distances_[which[n]] = static_cast<float>(distances[n]);
+    off.clear(), which.clear();
+  };
   for (std::size_t i = 0; i < distances_.size(); ++i) {
     if (!(distances_[i] > tolerance / 10)) continue;
     off.push_back({.point = mesh_.points[i],
@@ -78,10 +91,9 @@ void RefinableMesh::measure_points(double tolerance) {
                    .ahead = within(planes_[i], gradients_[i]),
                    .most = 2 * feet_.cell()});
     which.push_back(i);
+    if (off.size() == asked_at_once) know();
   }
-  std::vector<double> distances;
-  feet_.distances(off, tolerance, distances);
-  for (std::size_t n = 0; n < which.size(); ++n) distances_[which[n]] = static_cast<float>(distances[n]);
+  know();
 }
 
 unsigned RefinableMesh::plane_of_triangle(std::uint32_t triangle) const {
@@ -171,9 +183,19 @@ void RefinableMesh::measure_edges(double tolerance) {
   std::sort(edges.begin(), edges.end());
   std::vector<PointNearSurface> asked;
   std::vector<std::pair<std::size_t, Bend>> first_of_asked;
+  std::vector<double> distances;
   const auto know = [&](std::size_t e, double distance) {
     for (std::size_t i = e; i < e + 2; ++i)
       known_[edges[i].triangle].edge[edges[i].side] = static_cast<float>(distance);
+  };
+  const auto know_asked = [&] {
+    ask(asked, tolerance, distances);
+    for (std::size_t i = 0; i < distances.size(); ++i) {
+      auto& [edge, bend] = first_of_asked[i];
+      bend.middle = std::clamp(distances[i], -asked[i].most, asked[i].most);
+      know(edge, bend.farthest());
+    }
+    asked.clear(), first_of_asked.clear();
   };
   for (std::size_t e = 0; e + 1 < edges.size(); e += 2) {  // the mesh is closed: every edge twice
     const unsigned p = plane_of_triangle(edges[e].triangle), q = plane_of_triangle(edges[e + 1].triangle);
@@ -193,14 +215,9 @@ void RefinableMesh::measure_edges(double tolerance) {
     const Vec3 n0 = normal_of(edges[e].triangle), n1 = normal_of(edges[e + 1].triangle);
     asked.back().ahead = within(asked.back().planes, n0 / norm(n0) + n1 / norm(n1));
     first_of_asked.push_back({e, bend});
+    if (asked.size() == asked_at_once) know_asked();
   }
-  std::vector<double> distances;
-  ask(asked, tolerance, distances);
-  for (std::size_t i = 0; i < distances.size(); ++i) {
-    auto& [edge, bend] = first_of_asked[i];
-    bend.middle = std::clamp(distances[i], -asked[i].most, asked[i].most);
-    know(edge, bend.farthest());
-  }
+  know_asked();
 }
 
 // Where an edge is to be halved, the middle will be another one. Of a triangle curved as a quadratic function is, the
@@ -209,6 +226,12 @@ void RefinableMesh::measure_edges(double tolerance) {
 void RefinableMesh::measure_middles(double tolerance) {
   std::vector<PointNearSurface> asked;
   std::vector<std::uint32_t> triangles;
+  std::vector<double> distances;
+  const auto know_asked = [&] {
+    ask(asked, tolerance, distances);
+    for (std::size_t i = 0; i < distances.size(); ++i) known_[triangles[i]].middle = static_cast<float>(distances[i]);
+    asked.clear(), triangles.clear();
+  };
   for (std::uint32_t t = 0; t < known_.size(); ++t) {
     const auto& edge = known_[t].edge;
     const auto size = [&](std::size_t side) { return std::fabs(edge[side]); };
@@ -227,11 +250,10 @@ void RefinableMesh::measure_middles(double tolerance) {
       asked.push_back(middle);
       asked.back().ahead = normal_of(t);
       triangles.push_back(t);
+      if (asked.size() == asked_at_once) know_asked();
     }
   }
-  std::vector<double> distances;
-  ask(asked, tolerance, distances);
-  for (std::size_t i = 0; i < distances.size(); ++i) known_[triangles[i]].middle = static_cast<float>(distances[i]);
+  know_asked();
 }
 
 bool RefinableMesh::normals_were_right(double tolerance) {
@@ -286,14 +308,6 @@ std::size_t RefinableMesh::refine(double tolerance) {
   std::sort(cuts.begin(), cuts.end());
   cuts.erase(std::unique(cuts.begin(), cuts.end()), cuts.end());
   if (cuts.empty() && bridges.empty()) return 0;
-  std::vector<PointNearSurface> middles;
-  for (const Cut& c : cuts) {
-    middles.push_back(middle_of(c.edge.a, c.edge.b));
-    PointNearSurface& middle = middles.back();
-    middle.slope = 0;
-    if (norm(middle.gradient) > 0)
-      middle.value = static_cast<double>(c.distance) * norm(within(middle.planes, middle.gradient));
-  }
   std::vector<std::array<std::uint32_t, 3>> halved(known_.size(), {none, none, none});  // numbers of cuts
   std::vector<Vec3> normals(cuts.size());
   for (std::uint32_t t = 0; t < known_.size(); ++t)
@@ -306,9 +320,19 @@ std::size_t RefinableMesh::refine(double tolerance) {
       found->opposite[is_first ? 0 : 1] = mesh_.triangles[t][(side + 2) % 3];
       normals[halved[t][side]] += normal_of(t);
     }
-  for (std::size_t i = 0; i < cuts.size(); ++i) middles[i].ahead = within(middles[i].planes, normals[i]);
   const auto first = static_cast<std::uint32_t>(mesh_.points.size());
-  place(cuts, middles, tolerance);
+  std::vector<PointNearSurface> middles;
+  for (std::size_t i = 0; i < cuts.size(); ++i) {
+    middles.push_back(middle_of(cuts[i].edge.a, cuts[i].edge.b));
+    PointNearSurface& middle = middles.back();
+    middle.slope = 0;
+    if (norm(middle.gradient) > 0)
+      middle.value = static_cast<double>(cuts[i].distance) * norm(within(middle.planes, middle.gradient));
+    middle.ahead = within(middle.planes, normals[i]);
+    if (middles.size() < asked_at_once && i + 1 < cuts.size()) continue;
+    place(std::span(cuts).subspan(i + 1 - middles.size(), middles.size()), middles, tolerance);
+    middles.clear();
+  }
   for (std::uint32_t t = 0; t < halved.size(); ++t) {
     for (std::uint32_t& middle : halved[t])
       if (middle != none) middle += first;

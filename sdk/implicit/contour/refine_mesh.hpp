@@ -79,6 +79,7 @@ class RefinableMesh {
   };
 
   [[nodiscard]] static float farthest(const Known& known);
+  void move_onto_surface(std::span<const std::size_t> which, double tolerance);
   void measure_edges(double tolerance);
   void measure_middles(double tolerance);
   void ask(std::span<const PointNearSurface> points, double tolerance, std::vector<double>& distances);

@@ -9,6 +9,8 @@ namespace meso::implicit {
 namespace {
 
 constexpr std::size_t batch = 4096;
+// What is kept of a point while it is asked is ten times the point: so many at a time.
+constexpr std::size_t part = 1 << 14;
 constexpr int most_steps = 8;
 
 }  // namespace
@@ -40,19 +42,22 @@ void SurfaceFeet::ask(std::span<const Vec3> points, std::vector<double>& out) {
 }
 
 void SurfaceFeet::slopes(std::span<const Vec3> points, std::vector<Vec3>& out, std::vector<double>& values) {
-  around_.clear();
-  for (const Vec3& p : points)
-    for (std::size_t axis = 0; axis < 4; ++axis) {
-      around_.push_back(p);
-      if (axis < 3) around_.back()[axis] += 1e-5 * grid_.spacing(axis);
-    }
-  ask(around_, around_values_);
   out.resize(points.size());
   values.resize(points.size());
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    values[i] = around_values_[4 * i + 3];
-    for (std::size_t axis = 0; axis < 3; ++axis)
-      out[i][axis] = (around_values_[4 * i + axis] - values[i]) / (around_[4 * i + axis][axis] - points[i][axis]);
+  for (std::size_t first = 0; first < points.size(); first += part) {
+    const auto some = points.subspan(first, std::min(part, points.size() - first));
+    around_.clear();
+    for (const Vec3& p : some)
+      for (std::size_t axis = 0; axis < 4; ++axis) {
+        around_.push_back(p);
+        if (axis < 3) around_.back()[axis] += 1e-5 * grid_.spacing(axis);
+      }
+    ask(around_, around_values_);
+    for (std::size_t i = 0; i < some.size(); ++i) {
+      const double here = values[first + i] = around_values_[4 * i + 3];
+      for (std::size_t axis = 0; axis < 3; ++axis)
+        out[first + i][axis] = (around_values_[4 * i + axis] - here) / (around_[4 * i + axis][axis] - some[i][axis]);
+    }
   }
 }
 
@@ -93,6 +98,15 @@ std::vector<std::size_t> SurfaceFeet::not_certain(std::span<const PointNearSurfa
 }
 
 void SurfaceFeet::distances(std::span<const PointNearSurface> points, double limit, std::vector<double>& out) {
+  out.clear();
+  std::vector<double> some;
+  for (std::size_t first = 0; first < points.size(); first += part) {
+    distances_of_part(points.subspan(first, std::min(part, points.size() - first)), limit, some);
+    out.insert(out.end(), some.begin(), some.end());
+  }
+}
+
+void SurfaceFeet::distances_of_part(std::span<const PointNearSurface> points, double limit, std::vector<double>& out) {
   const std::vector<std::size_t> which = not_certain(points, limit, out);
   std::vector<PointNearSurface> open;
   for (const std::size_t i : which) {

@@ -72,6 +72,7 @@ class SurfaceFeet {
   void ask(std::span<const Vec3> points, std::vector<double>& out);
   [[nodiscard]] std::vector<std::size_t> not_certain(std::span<const PointNearSurface> points, double limit,
                                                      std::vector<double>& out);
+  void distances_of_part(std::span<const PointNearSurface> points, double limit, std::vector<double>& out);
   void measure_in_planes(std::span<const PointNearSurface> points, double limit, std::vector<double>& out);
   void find_distances(std::span<const PointNearSurface> points, double limit, std::vector<double>& out);
 
