@@ -51,6 +51,7 @@ class WordsAsDocuments(Command):
         "tpms.d helix 3,-1 rotate 1,1,0 0.5 cylindrical -7 shell 0.4 box ball move 1,0,0 union spherical -3,2 union -b -2,-2,-2,2,2,2 -s 24^3",
         "cylinder scale 0.3 orient 0,1,0 move 1.2,0,0 repeat 0,0,1 helix 1,1 -b -2,-2,0,2,2,4 -s 30^3",
         "tpms.gyroid tpms.d blend '(x + 1)/2' -s 20^3",
+        "ball box move 0.5,0,0 difference rotate 1,2,3 0.4 shell 0.1 -s 24^3",
     ]
 
     @unittest.skipUnless(HAS_CONVERT, "this build does not convert")
@@ -83,7 +84,7 @@ class WordsAsDocuments(Command):
         self.assertEqual(self.bytes("printed.ply"), self.bytes("words.ply"))
 
     def test_what_cannot_be_said_is_named(self):
-        self.meso(4, "sdf", "ball box union shell 0.1 -o part.meso", says="SDF_NOT_A_DOCUMENT: no document is written: 'shell'")
+        self.meso(4, "sdf", "ball box smooth-union 0.2 shell 0.1 -o part.meso", says="SDF_NOT_A_DOCUMENT: no document is written: 'shell'")
         self.assertFalse((self.folder / "part.meso").exists())
         self.meso(0, "sdf", "tpms.gyroid cylindrical 8 -o bent.meso")
         self.meso(4, "convert", "bent.meso bent.step", says="CONFORMAL_NOT_REALISED")
@@ -215,6 +216,30 @@ class Accuracy(Command):
         self.meso(6, "convert", f"{wall} a.stl --tolerance 1e-9mm --timeout 60", says="LIMIT_TOLERANCE")
         for flag in ("--samples 40", "--spacing 1mm"):
             self.meso(2, "convert", f"{tube} a.stl --tolerance 0.1mm {flag}", says="--tolerance picks the samples")
+
+    @unittest.skipUnless(HAS_CONVERT, "this build does not convert")
+    def test_memory_is_as_told(self):
+        """160 bytes a triangle, and what the program takes: 325 000 triangles of blended_cells fit into 100 MiB."""
+        blended, ball = (EXAMPLES / "implicit" / f"{name}.meso" for name in ("blended_cells", "gyroid_ball"))
+        report = json.loads(self.meso(0, "convert", f"{blended} a.ply --engine implicit --tolerance 0.1mm --max-memory 100M --jobs 1 --json"))
+        self.assertEqual([d["code"] for d in report["diagnostics"]], [])
+        self.assertGreater(report["triangles"], 250000)
+        self.meso(6, "convert", f"{ball} a.ply --tolerance 0.01mm --max-memory 60M --jobs 1", says="MiB, the budget is 60 MiB")
+
+    @unittest.skipUnless(HAS_CONVERT, "this build does not convert")
+    def test_edges_ask_for_no_finer_grid(self):
+        """Two rings of the cone: its thin sheets end in edges as long as they are, beside which triangles fold on any grid."""
+        cone = (EXAMPLES / "implicit/gyroid_cone.meso").read_text(encoding="utf-8")
+        (self.folder / "cone.meso").write_text(cone.replace('count="8"', 'count="2"'), encoding="utf-8")
+        report = json.loads(self.meso(0, "convert", "cone.meso a.ply --engine implicit --tolerance 0.2mm --json"))
+        self.assertLessEqual(report["accuracy"]["distance"], 0.2)
+        self.assertLess(report["accuracy"]["gridSamples"], 2e7)
+
+    @unittest.skipUnless(HAS_CONVERT, "this build does not convert")
+    def test_a_finer_grid_where_the_first_is_not_enough(self):
+        spring = EXAMPLES / "implicit/spring.meso"
+        report = json.loads(self.meso(0, "convert", f"{spring} a.ply --engine implicit --tolerance 0.1mm --json"))
+        self.assertLessEqual(report["accuracy"]["distance"], 0.1)
 
 
 if __name__ == "__main__":

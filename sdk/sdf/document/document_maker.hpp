@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <deque>
 #include <filesystem>
 #include <map>
 #include <optional>
@@ -40,14 +41,14 @@ struct Operand {
   std::string id;
 };
 
-/// A level of a solid that was moved or bent is a move or a bend of the level: the same function. Cells have levels,
-/// moves stand outside.
-SolidTree moves_last(const SolidTree& tree);
+/// The same solid in other words: levels of cells first, then moves, bends and joints, as a document has them. Words
+/// that nobody wrote are put into `made_up`, which must outlive the tree.
+SolidTree levels_first(const SolidTree& tree, std::deque<Instruction>& made_up);
 
 class DocumentMaker {
  public:
   DocumentMaker(const Program& program, const std::filesystem::path& folder, DiagnosticSink& sink)
-      : tree_(moves_last(solid_tree(program))), folder_(folder), sink_(sink) {}
+      : tree_(levels_first(solid_tree(program), made_up_)), folder_(folder), sink_(sink) {}
 
   std::optional<Document> make(const Program& program, const Box3& box);
 
@@ -146,6 +147,7 @@ class DocumentMaker {
     pattern.fill = std::move(over);
   }
 
+  std::deque<Instruction> made_up_;  // before the tree that points to them
   SolidTree tree_;
   const std::filesystem::path& folder_;
   DiagnosticSink& sink_;

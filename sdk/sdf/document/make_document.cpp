@@ -7,31 +7,6 @@
 
 namespace meso::sdf {
 
-static bool is_rigid(Verb verb) { return is_move(verb) && verb != Verb::scale; }
-
-SolidTree moves_last(const SolidTree& tree) {
-  SolidTree result;
-  std::vector<Index> number;
-  const auto add = [&](const Instruction* word, std::vector<Index> of) {
-    result.nodes.push_back({word, std::move(of)});
-    return static_cast<Index>(result.nodes.size() - 1);
-  };
-  for (const SolidTree::Node& node : tree.nodes) {
-    std::vector<Index> of;
-    for (const Index part : node.of) of.push_back(number[part]);
-    std::vector<const Instruction*> moves;
-    if (is_level(node.made_by->verb) && node.made_by->text.empty() && node.made_by->verb != Verb::density)
-      while (is_rigid(result.nodes[of[0]].made_by->verb) || is_bend(result.nodes[of[0]].made_by->verb)) {
-        moves.push_back(result.nodes[of[0]].made_by);
-        of[0] = result.nodes[of[0]].of[0];
-      }
-    Index made = add(node.made_by, std::move(of));
-    for (std::size_t i = moves.size(); i-- > 0;) made = add(moves[i], {made});
-    number.push_back(made);
-  }
-  return result;
-}
-
 std::optional<Document> DocumentMaker::make(const Program& program, const Box3& box) {
   document_.metadata.push_back({.name = "title", .text = "A design in words, as a document"});
   const auto solid = operand(static_cast<Index>(tree_.nodes.size() - 1), box);

@@ -68,6 +68,13 @@ const char* const designs[] = {
     "tpms.p offset 0.35 shell 0.4",
     "tpms.d offset 0.3 complement",
     "tpms.p eccentric-shell -0.3,0.5",
+    "tpms.p complement eccentric-shell -0.5,0.3",
+    "tpms.gyroid complement shell 0.7",
+    "ball box move 0.4,0,0 union shell 0.2",
+    "ball box move 0.4,0,0 difference rotate 1,2,3 0.4 eccentric-shell -0.1,0.05",
+    "ball tpms.gyroid complement intersection offset 0.1",
+    "ball box union dup move 1,1,0 union complement offset -0.1 shell 0.1",
+    "tpms.gyroid cylindrical 8 ball scale 2 intersection offset 0.05 -b -1,-1,-1,1,1,1",
     "tpms.iwp density 0.3",
     "tpms.gyroid scale 3 density '0.3 + 0.05*x'",
     "tpms.gyroid shell '0.3 + 0.1*x*tau/pi'",
@@ -182,10 +189,16 @@ TEST(WordsAndDocuments, EveryWordIsInADesign) {
 
 TEST(WordsAndDocuments, WhatADocumentCannotSayIsNamed) {
   const std::pair<const char*, const char*> cases[] = {
-      {"cone 1,0,1 offset 0.1 cylindrical 8", "cone"}, {"ball box union spherical 8,4 shell 0.1", "shell"},
-      {"ball box union shell 0.1", "shell"},           {"tpms.gyroid shell 0.1 shell 0.05", "shell"},
-      {"tpms.gyroid offset 0.1 offset 0.1", "offset"}, {"cone 1,0,1 offset 0.1", "cone"},
-      {"strut.bcc 0.1 offset 0.1", "offset"},          {"tpms.gyroid cylindrical 8 tpms.p blend x", "cylindrical"},
+      {"cone 1,0,1 offset 0.1 cylindrical 8", "cone"},
+      {"ball box union scale 2 shell 0.1", "shell"},
+      {"ball box union shell 0.1 offset 0.1", "offset"},
+      {"ball box smooth-union 0.1 offset 0.1", "offset"},
+      {"ball box union offset 0.1*x", "offset"},
+      {"tpms.gyroid shell 0.1 shell 0.05", "shell"},
+      {"tpms.gyroid offset 0.1 offset 0.1", "offset"},
+      {"cone 1,0,1 offset 0.1", "cone"},
+      {"strut.bcc 0.1 offset 0.1", "offset"},
+      {"tpms.gyroid cylindrical 8 tpms.p blend x", "cylindrical"},
       {"ball scale 1,2,3 shell 0.1", "scale"},
   };
   for (const auto& [design, word] : cases) {
