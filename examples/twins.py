@@ -26,7 +26,7 @@ SHARP = ("--sharp",)  # edges as they are; takes ten times as long and more
 CASES = [
     ("ibeam/ibeam", "0.4mm", (), ()),
     ("disk/disk", "0.4mm", (), ("--cut", "z=3mm")),
-    ("sphere/sphere", "0.5mm", SHARP, ("--cut", "y=1.6mm")),
+    ("sphere/sphere", "0.2mm", SHARP, ("--cut", "y=1.6mm")),
     ("gear/gear", "0.2mm", SHARP, ()),
     ("direction-beam/direction-beam", "0.3mm", (), ("--cut", "x=0")),
 ]
@@ -41,7 +41,7 @@ CUTS = {"parts_of_parts": ("--cut", "y=8mm")}
 FIELDS = {
     "blended_cells": "0.4mm", "density_from_field": "0.3mm", "graded_density": "0.4mm", "growing_cells": "0.4mm", "gyroid_ball": "0.25mm",
     "gyroid_cone": "0.25mm", "gyroid_globe": "0.25mm", "gyroid_tube": "0.25mm", "skin_and_fillet": "0.4mm", "spring": "0.25mm", "struts_by_cell": "0.15mm",
-    "wall_of_a_length": "0.4mm",
+    "wall_of_a_length": "0.4mm", "walls_along_walls": "0.4mm",
 }
 
 
@@ -84,7 +84,7 @@ def main():
         twin(options.meso, document, spacing, pictures / f"{name}-implicit.png", *CUTS.get(name, ()), edges=SHARP)
     for name, spacing in FIELDS.items():
         if options.only in name:
-            twin(options.meso, HERE / f"implicit/{name}.meso", spacing, HERE / f"implicit/{name}.png")
+            twin(options.meso, HERE / f"implicit/{name}.meso", spacing, HERE / f"implicit/{name}.png", edges=SHARP)
 
 
 if __name__ == "__main__":

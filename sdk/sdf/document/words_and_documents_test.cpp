@@ -73,7 +73,7 @@ const char* const designs[] = {
     "ball box move 0.4,0,0 union shell 0.2",
     "ball box move 0.4,0,0 difference rotate 1,2,3 0.4 eccentric-shell -0.1,0.05",
     "ball tpms.gyroid complement intersection offset 0.1",
-    "ball box union dup move 1,1,0 union complement offset -0.1 shell 0.1",
+    "ball box union dup move 1,1,0 union complement shell 0.1",
     "tpms.gyroid cylindrical 8 ball scale 2 intersection offset 0.05 -b -1,-1,-1,1,1,1",
     "tpms.iwp density 0.3",
     "tpms.gyroid scale 3 density '0.3 + 0.05*x'",
