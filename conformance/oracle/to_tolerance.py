@@ -133,7 +133,7 @@ def reference(a, document, folder, feature, tolerance):
         pass
     points, _ = mesh_of(folder / "mesh.ply")
     size = points.max(0) - points.min(0)
-    spacing = max(feature / 10, (size.prod() / REFERENCE_NODES) ** (1 / 3))
+    spacing = max(min(feature / 10, tolerance / 2), (size.prod() / REFERENCE_NODES) ** (1 / 3))
     meshes = []
     for h in (2 * spacing, spacing):
         meso(a, document, file, "--engine", "implicit", "--sharp", "--spacing", f"{h}mm", seconds=120)

@@ -77,6 +77,7 @@ class Flags(CommandTest):
         good = self.file("good.meso", document())
         for flag in (["--set", "n"], ["--set", "=1"], ["--set", "n="], ["--set", "m=1"], ["--set", "n=1+"], ["--set", "n=1/0"],
                      ["--engine", "magic"], ["--deflection", "-1mm"], ["--deflection", "0"], ["--deflection", "wide"],
+                     ["--deflection", "1deg"], ["--angle", "1mm"],
                      ["--angle", "1/0"], ["--jobs", "-1"], ["--jobs", "many"], ["--timeout", "0"], ["--timeout", "nan"],
                      ["--max-memory", "2X"], ["--max-memory", "-1G"], ["--max-memory", "1e400"], ["--progress", "loud"],
                      ["--part", "nobody"]):

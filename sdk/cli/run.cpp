@@ -188,12 +188,24 @@ std::optional<double> Run::positive_value(const std::string& text, LengthUnit un
   return std::nullopt;
 }
 
+static bool ends_in_one_of(std::string_view text, std::initializer_list<std::string_view> units) {
+  return std::ranges::any_of(units, [&](std::string_view unit) { return text.ends_with(unit); });
+}
+
 std::optional<double> Run::length_mm(const std::string& text, LengthUnit unit, const char* flag) {
+  if (ends_in_one_of(text, {"deg", "rad"})) {
+    usage_error(std::string(flag) + ": '" + text + "' is an angle, and a length such as 0.2mm is asked for");
+    return std::nullopt;
+  }
   const auto value = positive_value(text, unit, flag);
   return value ? std::optional(*value * millimeters_per(unit)) : std::nullopt;
 }
 
 std::optional<double> Run::angle_rad(const std::string& text, const char* flag) {
+  if (ends_in_one_of(text, {"um", "mm", "cm", "m", "in", "ft"})) {
+    usage_error(std::string(flag) + ": '" + text + "' is a length, and an angle such as 20deg is asked for");
+    return std::nullopt;
+  }
   return positive_value(text, LengthUnit::millimeter, flag);
 }
 

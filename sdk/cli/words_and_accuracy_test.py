@@ -214,6 +214,7 @@ class Accuracy(Command):
             return
         tube, wall = (EXAMPLES / "implicit" / f"{name}.meso" for name in ("gyroid_tube", "wall_of_a_length"))
         self.meso(6, "convert", f"{wall} a.stl --tolerance 1e-9mm --timeout 60", says="LIMIT_TOLERANCE")
+        self.meso(2, "convert", f"{tube} a.stl --tolerance 0.1deg", says="is an angle, and a length such as 0.2mm is asked for")
         for flag in ("--samples 40", "--spacing 1mm"):
             self.meso(2, "convert", f"{tube} a.stl --tolerance 0.1mm {flag}", says="--tolerance picks the samples")
 
