@@ -6,7 +6,7 @@ usage: random_parts.py --meso PATH [--count 40 | --quick] [--seed 1] [--kind NAM
        random_parts.py --meso PATH --documents FOLDER
 
 Documents are those of membership.py and more: lattices offset from and turned against bodies, graded ones, imported
-bodies. `meso` realises each and judges it by its own evaluator of the definitions, which shares no code with the engine.
+bodies, parts in cells. `meso` realises each and judges it by its own evaluator of the definitions, which shares no code with the engine.
 One that fails is made smaller, element by element and number by number, as long as it still fails, and printed.
 
 Refusals are judged, too. A part called empty must have no point of the definitions inside, by functions that are written
@@ -33,6 +33,7 @@ import membership
 from bent_parts import bent_truss, grown_truss
 from membership import (REFUSALS, box, boolean, cell_section, cone, document, in_boxed, loops, moved, number, random_tree,
                         rotation, sphere, truss, turned)
+from nested_parts import nested
 
 NAMESPACE = "urn:meso-format:1.0"
 ALLOWED = {"GEOMETRY_BOOLEAN", "GEOMETRY_STRUTS_THICK", "LIMIT_TIME"}  # reasons for refusals, besides parts that are empty
@@ -155,7 +156,7 @@ def imported(rng, folder, meso):
     return lattice_in_body(rng, plain_truss, at_most=2, body=(import_text, in_import))
 
 
-KINDS = {f.__name__: f for f in (offset, set_by_index, solids_in_cells, imported, bent_truss, grown_truss)}
+KINDS = {f.__name__: f for f in (offset, set_by_index, solids_in_cells, imported, bent_truss, grown_truss, nested)}
 for known, make in membership.KINDS.items():
     KINDS[known] = lambda rng, folder, meso, make=make: make(rng)
 

@@ -161,17 +161,27 @@ std::optional<BeamGraph> beam_graph(const eval::CellStream& cells, SnappedRadii&
   Collector collector(snapped, why, context);
   std::uint64_t kept = 0;
   bool is_graph = true;
+  const eval::BeamsShape* of_part = context.parts != nullptr ? context.parts->beams_in(cells) : nullptr;
   const auto take = [&](const eval::PlacedCell& cell) {
     if (++kept % 256 == 0 && run.should_stop()) return is_graph = false;
-    const auto shape = cells.shape(cell, context.sink);
-    const auto* beams = shape ? std::get_if<eval::BeamsShape>(&shape->value) : nullptr;
+    const auto shape = of_part == nullptr ? cells.shape(cell, context.sink) : std::nullopt;
+    const auto* beams = shape ? std::get_if<eval::BeamsShape>(&shape->value) : of_part;
     const bool is_mapped = cell.mapping == CellMapping::conformal;
-    return is_graph =
-               beams != nullptr && collector.add(*beams, is_mapped ? Affine{} : cell.world_from_cell, shape->source);
+    const ElementId where = shape ? shape->source : cells.unit_cell().id_in_source;
+    return is_graph = beams != nullptr && collector.add(*beams, is_mapped ? Affine{} : cell.world_from_cell, where);
   };
   if (!cells.visit(0, cells.size(), take, context.sink) || !is_graph || kept == 0) return {};
   auto graph = collector.finish();
   if (graph) graph->cells = kept;
+  return graph;
+}
+
+std::optional<BeamGraph> beam_graph(const eval::BeamsShape& beams, ElementId where, SnappedRadii& snapped,
+                                    std::string& why, const SolidContext& context) {
+  Collector collector(snapped, why, context);
+  if (!collector.add(beams, {}, where)) return {};
+  auto graph = collector.finish();
+  if (graph) graph->cells = 1;
   return graph;
 }
 

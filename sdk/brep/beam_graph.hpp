@@ -51,4 +51,8 @@ inline constexpr double equal_radii = 2e-5;
 [[nodiscard]] std::optional<BeamGraph> beam_graph(const eval::CellStream& cells, SnappedRadii& snapped,
                                                   std::string& why, const SolidContext& context);
 
+/// Of beams in the world.
+[[nodiscard]] std::optional<BeamGraph> beam_graph(const eval::BeamsShape& beams, ElementId where, SnappedRadii& snapped,
+                                                  std::string& why, const SolidContext& context);
+
 }  // namespace meso::brep

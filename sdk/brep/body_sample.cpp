@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "meso/eval/bounds.hpp"
+#include "part_fold.hpp"
 #include "realise_boundary.hpp"
 #include "realise_lattice.hpp"
 #include "realise_part.hpp"
@@ -46,7 +47,10 @@ std::array<Vec3, 7> probes(const Box3& box) {
 class PartSample {
  public:
   PartSample(const eval::Evaluation& evaluation, const RealiseOptions& options, DiagnosticSink& sink)
-      : evaluation_(evaluation), options_(options), context_{evaluation.checked().source(), options.run, sink} {}
+      : evaluation_(evaluation),
+        options_(options),
+        parts_(evaluation, options, sink),
+        context_{evaluation.checked().source(), options.run, sink, &parts_} {}
 
   /// `is_outermost`: not an operand of another part.
   std::optional<BodySample> fold(const Part& part, bool is_outermost) {
@@ -144,6 +148,7 @@ class PartSample {
 
   const eval::Evaluation& evaluation_;
   const RealiseOptions& options_;
+  PartFold parts_;  ///< those that stand in cells
   SolidContext context_;
 };
 

@@ -15,8 +15,6 @@
 namespace meso::brep {
 namespace {
 
-const BeamsBody* beams_of(const eval::CellStream& cells) { return std::get_if<BeamsBody>(&cells.unit_cell().body); }
-
 /// What is told of an automatic ball that is larger than its struts ask for alone, because they leave their node close
 /// together, and that passes into another: of the one that reaches farthest. Empty if there is none.
 std::string crowded_node(const BeamGraph& graph) {
@@ -59,22 +57,25 @@ void tell_snapped(const SnappedRadii& snapped, ElementId where, const SolidConte
 
 }  // namespace
 
-bool may_be_beam_graph(const eval::CellStream& cells) {
-  return beams_of(cells) != nullptr && !cells.unit_cell().clip_to_box.value_or(false);
+bool may_be_beam_graph(const eval::CellStream& cells, const SolidContext& context) {
+  if (cells.unit_cell().clip_to_box.value_or(false)) return false;
+  if (std::holds_alternative<BeamsBody>(cells.unit_cell().body)) return true;
+  const eval::BeamsShape* beams = context.parts != nullptr ? context.parts->beams_in(cells) : nullptr;
+  return beams != nullptr && beams->struts.size() * cells.size() <= context.run.max_cells;
 }
 
 bool has_touching_circles(const eval::CellStream& cells) {
-  const BeamsBody* beams = beams_of(cells);
+  const auto* beams = std::get_if<BeamsBody>(&cells.unit_cell().body);
   return beams != nullptr && beams->node_radius && beams->node_radius->text == "auto";
 }
 
-std::optional<BeamGraphPart> beam_graph_part(const eval::CellStream& cells, ElementId where,
-                                             const LatticeOptions& options, const SolidContext& context) {
-  SnappedRadii snapped;
-  std::string why;
-  auto graph = beam_graph(cells, snapped, why, context);
+namespace {
+
+/// `crowded`: what is told where the graph cannot be put together, if anything.
+std::optional<BeamGraphPart> put_together(const std::optional<BeamGraph>& graph, SnappedRadii snapped, std::string why,
+                                          const std::string& crowded, ElementId where, const LatticeOptions& options,
+                                          const SolidContext& context) {
   const std::uint64_t kept = graph ? graph->cells : 0;
-  const std::string crowded = graph && has_touching_circles(cells) ? crowded_node(*graph) : "";
   const SnappedRadii of_graph = snapped;
   const auto joints = graph ? joints_of(*graph, snapped, why) : std::nullopt;
   if (graph && !joints) {
@@ -103,6 +104,25 @@ std::optional<BeamGraphPart> beam_graph_part(const eval::CellStream& cells, Elem
   }
   tell_snapped(snapped, where, context);
   return BeamGraphPart{std::move(*body), kept};
+}
+
+}  // namespace
+
+std::optional<BeamGraphPart> beam_graph_part(const eval::CellStream& cells, ElementId where,
+                                             const LatticeOptions& options, const SolidContext& context) {
+  SnappedRadii snapped;
+  std::string why;
+  const auto graph = beam_graph(cells, snapped, why, context);
+  const std::string crowded = graph && has_touching_circles(cells) ? crowded_node(*graph) : "";
+  return put_together(graph, snapped, std::move(why), crowded, where, options, context);
+}
+
+std::optional<BeamGraphPart> beam_graph_part(const eval::BeamsShape& beams, ElementId where,
+                                             const LatticeOptions& options, const SolidContext& context) {
+  SnappedRadii snapped;
+  std::string why;
+  const auto graph = beam_graph(beams, where, snapped, why, context);
+  return put_together(graph, snapped, std::move(why), "", where, options, context);
 }
 
 std::optional<Solids> beam_graph_primitives(const eval::CellStream& cells, const SolidContext& context) {

@@ -17,7 +17,7 @@ struct BeamGraphPart {
 };
 
 /// True if the cells are beams, and those are to be tried as a graph.
-[[nodiscard]] bool may_be_beam_graph(const eval::CellStream& cells);
+[[nodiscard]] bool may_be_beam_graph(const eval::CellStream& cells, const SolidContext& context);
 
 /// True if booleans would meet circles that touch, as automatic balls have them: such a lattice is not repeated.
 [[nodiscard]] bool has_touching_circles(const eval::CellStream& cells);
@@ -25,6 +25,10 @@ struct BeamGraphPart {
 /// Nothing, and no error in the sink, where struts meet in other ways (GEOMETRY_STRUTS_MEET tells why). May throw
 /// Standard_Failure.
 [[nodiscard]] std::optional<BeamGraphPart> beam_graph_part(const eval::CellStream& cells, ElementId where,
+                                                           const LatticeOptions& options, const SolidContext& context);
+
+/// The same for beams of any origin, in the world.
+[[nodiscard]] std::optional<BeamGraphPart> beam_graph_part(const eval::BeamsShape& beams, ElementId where,
                                                            const LatticeOptions& options, const SolidContext& context);
 
 /// The balls and struts of the cells, each once however many cells have it: their union is the body. Nothing, and no

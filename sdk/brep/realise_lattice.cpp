@@ -5,6 +5,8 @@
 #include <algorithm>
 
 #include "boolean.hpp"
+#include "box_lattice.hpp"
+#include "lattice/cells_of_boxes.hpp"
 #include "lattice/clipped_lattice.hpp"
 #include "solid_primitive.hpp"
 #include "solid_shape.hpp"
@@ -14,47 +16,13 @@ namespace {
 
 constexpr double plane_tolerance = 1e-6;  ///< millimetres between a face and the plane of cell boxes it stands for
 
-/// A pattern whose cell (i, j, k), counted along the box axes, is the first cell moved by i dx, j dy, k dz.
-struct AlignedLattice {
-  eval::BoxShape box;
-  Affine world_from_cell;  ///< of cell (0, 0, 0), rigid
-  std::array<std::int32_t, 3> count{1, 1, 1};
-};
-
 Affine inverse(const Affine& rigid) {
   const Mat3 back = transposed(rigid.linear);
   return {back, -(back * rigid.translation)};
 }
 
-bool is_rigid(const Affine& map) { return is_similarity(map) && std::fabs(determinant(map.linear) - 1) < 1e-12; }
-
-/// The box axis that `step` runs along, exactly one box long; -1 if there is none.
-int axis_of(Vec3 step, Vec3 size) {
-  for (std::size_t a = 0; a < 3; ++a) {
-    Vec3 expected;
-    expected[a] = size[a];
-    if (norm(step - expected) <= 1e-9 * size[a]) return static_cast<int>(a);
-  }
-  return -1;
-}
-
-std::optional<AlignedLattice> aligned(const eval::CellStream::Lattice& lattice, const eval::BoxShape& box) {
-  if (!is_rigid(lattice.world_from_first)) return {};
-  AlignedLattice out{box, lattice.world_from_first};
-  const Mat3 steps = transposed(lattice.world_from_first.linear) * lattice.lattice;
-  std::array<bool, 3> used{};
-  for (std::size_t loop = 0; loop < 3; ++loop) {
-    if (lattice.count[loop] == 1) continue;
-    const int axis = axis_of(steps.column(loop), box.size);
-    if (axis < 0 || used[static_cast<std::size_t>(axis)] || lattice.count[loop] > 1'000'000) return {};
-    used[static_cast<std::size_t>(axis)] = true;
-    out.count[static_cast<std::size_t>(axis)] = static_cast<std::int32_t>(lattice.count[loop]);
-  }
-  return out;
-}
-
 /// Cells that are cut to their boxes are their own intersection with all of these.
-TopoDS_Shape all_boxes(const AlignedLattice& lattice) {
+TopoDS_Shape all_boxes(const BoxLattice& lattice) {
   Vec3 last = lattice.box.corner;
   for (std::size_t a = 0; a < 3; ++a) last[a] += lattice.count[a] * lattice.box.size[a];
   return BRepPrimAPI_MakeBox(to_pnt(lattice.box.corner), to_pnt(last)).Solid();
@@ -64,7 +32,7 @@ TopoDS_Shape all_boxes(const AlignedLattice& lattice) {
 /// face lies elsewhere, or beyond the cells: what the outermost cells send over their boxes would be in the body, too.
 using PlaneNumbers = std::array<std::vector<std::int64_t>, 3>;
 
-std::optional<PlaneNumbers> face_planes(const Solids& solids_in_cell_frame, const AlignedLattice& lattice) {
+std::optional<PlaneNumbers> face_planes(const Solids& solids_in_cell_frame, const BoxLattice& lattice) {
   const eval::BoxShape& box = lattice.box;
   PlaneNumbers planes;
   for (const TopoDS_Shape& solid : solids_in_cell_frame)
@@ -86,7 +54,7 @@ std::optional<PlaneNumbers> face_planes(const Solids& solids_in_cell_frame, cons
 /// The index grid cut by the face planes into blocks that are inside or outside as a whole.
 class Blocks {
  public:
-  Blocks(const Solids& solids_in_cell_frame, const AlignedLattice& lattice, const PlaneNumbers& planes) {
+  Blocks(const Solids& solids_in_cell_frame, const BoxLattice& lattice, const PlaneNumbers& planes) {
     for (std::size_t a = 0; a < 3; ++a) {
       const std::int64_t count = lattice.count[a];
       std::vector<std::int64_t>& cuts = cuts_[a];
@@ -107,7 +75,17 @@ class Blocks {
                          block_of_[1][static_cast<std::size_t>(cell[1])],
                          block_of_[2][static_cast<std::size_t>(cell[2])])];
   }
+  /// Boxes, and cells of the pattern that have one of them.
   [[nodiscard]] std::uint64_t kept() const { return kept_; }
+  [[nodiscard]] std::uint64_t kept_cells(const BoxLattice& lattice) const {
+    if (!lattice.is_refined()) return kept_;
+    CellsOfBoxes cells({lattice.count[0] - 1, lattice.count[1] - 1, lattice.count[2] - 1}, lattice.block);
+    for (std::int32_t x = 0; x < lattice.count[0]; ++x)
+      for (std::int32_t y = 0; y < lattice.count[1]; ++y)
+        for (std::int32_t z = 0; z < lattice.count[2]; ++z)
+          if (inside({x, y, z})) cells.add({x, y, z});
+    return cells.count();
+  }
 
   /// Walls of boxes between inside and outside.
   [[nodiscard]] std::uint64_t walls() const {
@@ -200,47 +178,28 @@ std::optional<CellShape> repeated_cell(const eval::Shape& shape, const eval::Box
   return CellShape{.box = bounds, .solids = std::move(*solids), .primitives = {}};
 }
 
-struct FirstCell {
-  eval::BoxShape box;
-  eval::Shape shape;
-};
-
-std::optional<FirstCell> first_cell(const eval::CellStream& cells, DiagnosticSink& sink) {
-  std::optional<FirstCell> out;
-  const auto take = [&](const eval::PlacedCell& cell) {
-    const auto box = cells.cell_box(cell, sink);
-    if (!box) return false;
-    if (auto shape = cells.shape(cell, sink)) out = FirstCell{*box, std::move(*shape)};
-    return false;
-  };
-  (void)cells.visit(0, 1, take, sink);
-  return out;
-}
-
 /// A lattice of boxes side by side, and the body in the frame of its first cell.
 struct Found {
-  AlignedLattice lattice;
+  BoxLattice lattice;
   CellShape cell;
   Solids body;                           ///< empty: the union of all cells
   std::shared_ptr<const Blocks> blocks;  ///< where the body's faces all lie on planes of the boxes
 };
 
-std::optional<Found> find_lattice(const Solids& macrostructure, const eval::CellStream& cells,
+std::optional<Found> find_lattice(const Solids& macrostructure, const eval::CellStream& cells, bool may_refine,
                                   const SolidContext& context) {
-  const bool cut = cells.unit_cell().clip_to_box.value_or(false);
-  const auto steps = cells.lattice();
-  if (!steps || cells.shape_varies()) return {};
-  const auto first = first_cell(cells, context.sink);
-  if (!first) return {};
-  const auto lattice = aligned(*steps, first->box);
+  const auto lattice = box_lattice(cells, may_refine, context);
   if (!lattice) return {};
   Solids in_cell_frame;
   for (const TopoDS_Shape& solid : macrostructure)
     in_cell_frame.push_back(mapped(solid, inverse(lattice->world_from_cell)));
-  if (macrostructure.empty() && cut) in_cell_frame.push_back(all_boxes(*lattice));
-  auto cell = repeated_cell(first->shape, lattice->box, context);
+  if (macrostructure.empty() && lattice->cut) in_cell_frame.push_back(all_boxes(*lattice));
+  auto cell = repeated_cell(lattice->shape, lattice->box, context);
   if (!cell) return {};
-  cell->cut_to_box = cut;
+  // What sticks out of a box within a cell stays: cutting it is the same only if the next box has it, too.
+  if (lattice->is_cut_by_cells && !reach_of(*cell).neighbours.empty())
+    return find_lattice(macrostructure, cells, false, context);
+  cell->cut_to_box = lattice->cut;
   std::shared_ptr<const Blocks> blocks;
   if (const auto planes = face_planes(in_cell_frame, *lattice); planes && !in_cell_frame.empty())
     blocks = std::make_shared<const Blocks>(in_cell_frame, *lattice, *planes);
@@ -307,7 +266,8 @@ namespace {
 std::optional<ClippedLattice> clipped_lattice(const Found& found, const Index3& last,
                                               const std::optional<MeshFineness>& mesh, const SolidContext& context) {
   const auto attempt = [&](const CellShape& cell, DiagnosticSink& sink) {
-    return clipped_lattice_body(cell, last, found.body, {.mesh = mesh, .reuse = true}, context.run, sink);
+    return clipped_lattice_body(cell, last, found.body, {.mesh = mesh, .reuse = true, .block = found.lattice.block},
+                                context.run, sink);
   };
   DiagnosticSink first, second;
   auto made = attempt(found.cell, first);
@@ -326,7 +286,7 @@ std::optional<ClippedLattice> clipped_lattice(const Found& found, const Index3& 
 std::optional<LatticePart> lattice_part(const Solids& macrostructure, const eval::CellStream& cells,
                                         const std::optional<CellRule>& whole_cells,
                                         const std::optional<MeshFineness>& mesh, const SolidContext& context) {
-  const auto found = find_lattice(macrostructure, cells, context);
+  const auto found = find_lattice(macrostructure, cells, !whole_cells, context);
   if (!found) return {};
   const auto& count = found->lattice.count;
   const Index3 last{count[0] - 1, count[1] - 1, count[2] - 1};
@@ -346,7 +306,7 @@ std::optional<LatticePart> lattice_part(const Solids& macrostructure, const eval
     out.body = std::move(*body);
     out.body.fragments = 0;
   } else if (found->blocks) {
-    out.kept = found->blocks->kept();
+    out.kept = found->blocks->kept_cells(found->lattice);
     if (out.kept == 0) return out;
     const LatticeSet set{.min = {0, 0, 0}, .max = last, .inside = [blocks = found->blocks](Index3 index) {
                            return blocks->inside(index);
@@ -365,12 +325,12 @@ std::optional<LatticePart> lattice_part(const Solids& macrostructure, const eval
 
 std::optional<LatticeSample> lattice_sample(const Solids& macrostructure, const eval::CellStream& cells,
                                             const std::optional<MeshFineness>& mesh, const SolidContext& context) {
-  const auto found = find_lattice(macrostructure, cells, context);
+  const auto found = find_lattice(macrostructure, cells, true, context);
   if (!found || !found->blocks) return {};
-  LatticeSample out{{}, found->blocks->kept()};
+  LatticeSample out{{}, found->blocks->kept_cells(found->lattice)};
   if (out.kept == 0) return out;
   // A block of n^3 cells has 6 n^2 walls: 8 a + 64 b = kept, 24 a + 96 b = walls.
-  const auto kept = static_cast<double>(out.kept), walls = static_cast<double>(found->blocks->walls());
+  const auto kept = static_cast<double>(found->blocks->kept()), walls = static_cast<double>(found->blocks->walls());
   const double of_large = (3 * kept - walls) / 96, of_small = kept / 8 - 8 * of_large;
   // Both stand in one body, far enough apart to be told by the first index.
   const LatticeSet set{.min = {-1, -1, -1}, .max = {8, 4, 4}, .inside = [](Index3 i) {

@@ -49,7 +49,14 @@ class Builder {
     return result;
   }
   Result operator()(const eval::ImplicitShape&) const { return not_realised("an implicit body"); }
-  Result operator()(const eval::PartShape&) const { return not_realised("a part as the body of a unit cell"); }
+  Result operator()(const eval::PartShape& shape) const {
+    if (context_.parts == nullptr) return not_realised("a part as the body of a unit cell");
+    const Solids* made = context_.parts->solids_of(*shape.part);
+    if (made == nullptr) return {};
+    Solids solids = *made;
+    for (TopoDS_Shape& solid : solids) solid = mapped(solid, map_);
+    return solids;
+  }
 
  private:
   Result not_realised(const char* what) const {

@@ -5,7 +5,8 @@
 //   if (const auto solids = solid_from_shape(shape, world_from_cell, context)) ...
 //
 // Millimetres. Primitives are checked before OpenCASCADE sees them, booleans after (boolean.hpp), imports on reading.
-// Implicit bodies and parts are BREP_NOT_REALISED. OpenCASCADE's failures come back as GEOMETRY_KERNEL.
+// Parts are asked of the context. Implicit bodies are BREP_NOT_REALISED. OpenCASCADE's failures come back as
+// GEOMETRY_KERNEL.
 
 #include <optional>
 

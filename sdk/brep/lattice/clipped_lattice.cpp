@@ -7,6 +7,7 @@
 #include "boolean.hpp"
 #include "lattice/assembly.hpp"
 #include "lattice/cell_clipper.hpp"
+#include "lattice/cells_of_boxes.hpp"
 #include "lattice/clip_signature.hpp"
 #include "lattice/parallel.hpp"
 #include "lattice/quotient_builder.hpp"
@@ -152,13 +153,16 @@ std::optional<ClippedLattice> clipped_lattice_body(const CellShape& cell, const 
     kind_of_task.push_back(static_cast<std::uint32_t>(solids->size()));
     solids->push_back(task.result.solid);
   }
+  CellsOfBoxes kept(last, options.block), crossing(last, options.block);
   for (std::uint32_t n = 0; n < cells.count(); ++n) {
     const std::uint32_t task = plan.task_of(n);
     if (task != KeptCells::none) kinds.set(n, kind_of_task[task]);
     const TopoDS_Shape& solid = (*solids)[kinds.of(cells.cell(n), cells)];
-    out.kept += !solid.IsNull();
-    out.crossing += task != KeptCells::none && plan.tasks[task].result.left == ClippedCell::Left::part;
+    if (!solid.IsNull()) kept.add(cells.cell(n));
+    if (task != KeptCells::none && plan.tasks[task].result.left == ClippedCell::Left::part) crossing.add(cells.cell(n));
   }
+  out.kept = kept.count();
+  out.crossing = crossing.count();
   if (out.kept == 0) return out;
   auto quotient = build_quotient(cell, *solids, {.mesh = options.mesh, .run = {}}, 10 * cell.tolerance(), run, sink);
   if (run.should_stop()) return stopped();

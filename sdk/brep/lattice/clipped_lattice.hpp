@@ -20,7 +20,8 @@ struct ClippedLattice {
 
 struct ClipOptions {
   std::optional<MeshFineness> mesh{};
-  bool reuse = true;  ///< one boolean for all cells that see the same piece of the body
+  bool reuse = true;      ///< one boolean for all cells that see the same piece of the body
+  Index3 block{1, 1, 1};  ///< boxes of one cell along each axis, where a cell has several: these count as one
 };
 
 /// Body n regularised union of the cells (0, 0, 0) ... `last`. `body`: outward solids in the frame of the cell whose
