@@ -3,15 +3,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
 #include <numbers>
 #include <tuple>
 
+#include "beam_graph_faces.hpp"
+#include "beam_graph_mesh.hpp"
 #include "beam_graph_rings.hpp"
 #include "beam_graph_sphere.hpp"
-#include "ellipsoid.hpp"
 #include "lattice/parallel.hpp"
-#include "lattice/union_find.hpp"
 #include "meso/base/number.hpp"
 #include "occt.hpp"
 
@@ -50,52 +49,36 @@ class BeamBody {
       : joints_(joints),
         graph_(joints.graph),
         options_(options),
-        rings_(joints, cuts_of(joints, options), *geometry_) {}
+        faces_(joints.graph),
+        rings_(joints, cuts_of(joints, options), faces_.geometry()) {}
 
   /// False: the run was to stop.
   bool make_faces() {
-    UnionFind sets(static_cast<std::uint32_t>(graph_.nodes.size()));
-    for (const BeamGraph::Strut& s : graph_.struts) sets.join(s.node[0], s.node[1]);
     for (std::uint32_t n = 0; n < graph_.nodes.size(); ++n) {
       if (n % 1024 == 0 && options_.run.should_stop()) return false;
       if (joints_.leaving[n].empty() && graph_.nodes[n].radius == 0) continue;
-      solids_.resize(std::max<std::size_t>(solids_.size(), sets.root(n) + 1));
-      faces_of_ = &solids_[sets.root(n)];
+      faces_.begin(n);
       if (joints_.leaving[n].empty())
         add_ball(n);
       else if (!joints_.is_straight[n])
         add_faces_of_ball(n);
     }
     for (std::uint32_t s = 0; s < graph_.struts.size(); ++s) {
-      faces_of_ = &solids_[sets.root(graph_.struts[s].node[0])];
+      faces_.begin(graph_.struts[s].node[0]);
       if (!joints_.is_swallowed[s]) add_strut(s);
     }
     return true;
   }
 
-  /// False: the circles are divided too coarsely, or the run was to stop.
-  bool make_mesh(const MeshFineness& fineness) {
-    return in_parallel(geometry_->faces.size(), options_.run, [&](std::size_t, std::size_t f) {
-      FaceTemplate& face = geometry_->faces[f];
-      if (const auto* sphere = std::get_if<SphereSurface>(&face.surface)) {
-        if (auto mesh = mesh_of(*sphere, face, fineness)) face.mesh = std::move(*mesh);
-        return !face.mesh.triangles.empty();
-      }
-      face.mesh = mesh_of_strut(strut_of_face_[f], fineness);
-      return true;
-    });
+  /// False: the circles of a ball could not be divided finely enough, or the run was to stop.
+  bool make_mesh() {
+    return faces_.mesh(
+        options_, [&](std::uint32_t edge, const MeshFineness& fineness) { return inner_points_of(edge, fineness); },
+        [&](std::uint32_t strut, const MeshFineness& fineness) { return mesh_of_strut(strut, fineness); });
   }
 
   Body finish() {
-    Body body;
-    for (auto& faces : solids_) {
-      if (faces.empty()) continue;
-      const auto visit = [list = std::make_shared<const std::vector<std::uint32_t>>(std::move(faces))](
-                             const std::function<void(const FaceInstance&)>& callback) {
-        for (const std::uint32_t face : *list) callback({face, {0, 0, 0}});
-      };
-      body.solids.push_back({Shell{geometry_, {}, visit}, {}});
-    }
+    Body body = faces_.body();
     body.pieces_volume = pieces_volume();
     return body;
   }
@@ -115,12 +98,6 @@ class BeamBody {
   }
 
   [[nodiscard]] Vec3 at(std::uint32_t node) const { return graph_.nodes[node].position; }
-
-  void add(FaceTemplate face, std::uint32_t strut) {
-    faces_of_->push_back(static_cast<std::uint32_t>(geometry_->faces.size()));
-    geometry_->faces.push_back(std::move(face));
-    strut_of_face_.push_back(strut);
-  }
 
   void add_strut(std::uint32_t s) {
     const Ring &first = rings_.ring(2 * s), &second = rings_.ring(2 * s + 1);
@@ -147,7 +124,7 @@ class BeamBody {
       face.box.extend(ring->frame.origin - reach);
       face.box.extend(ring->frame.origin + reach);
     }
-    add(std::move(face), s);
+    faces_.add(std::move(face), s);
   }
 
   void add_faces_of_ball(std::uint32_t node) {
@@ -163,27 +140,11 @@ class BeamBody {
         auto& uses = face.loops.emplace_back();
         for (const SphereArc& arc : loop) uses.push_back(coedges[arc.id]);
       }
-      if (coedges.size() == 1) add_seam(node, joints_.direction(joints_.leaving[node][0]), face);
+      if (coedges.size() == 1) faces_.add_seam(node, joints_.direction(joints_.leaving[node][0]), face);
       face.moments = sphere_moments(centre, radius, loops);
       face.box = box_of(node);
-      add(std::move(face), 0);
+      faces_.add(std::move(face));
     }
-  }
-
-  /// A sphere with one circle: readers know it by a seam from the circle to the pole across.
-  void add_seam(std::uint32_t node, Vec3 axis, FaceTemplate& face) {
-    const double r = graph_.nodes[node].radius;
-    const std::uint32_t start = geometry_->edges[face.loops[0][0].edge].vertex[0];
-    const Vec3 x = unit(geometry_->vertices[start] - at(node)), side = unit(x - dot(x, axis) * axis);
-    const auto pole = static_cast<std::uint32_t>(geometry_->vertices.size());
-    const auto seam = static_cast<std::uint32_t>(geometry_->edges.size());
-    geometry_->vertices.push_back(at(node) - r * axis);
-    geometry_->edges.push_back({.curve = Circle{{at(node), unit(cross(side, -axis)), x}, r}, .vertex = {start, pole}});
-    geometry_->edges.push_back({.curve = Line{}, .vertex = {pole, pole}, .degenerate = true});
-    std::get<SphereSurface>(face.surface).frame = {at(node), axis, side};
-    face.loops[0].push_back({.edge = seam});
-    face.loops[0].push_back({.edge = seam + 1});
-    face.loops[0].push_back({.edge = seam, .reversed = true});
   }
 
   [[nodiscard]] Box3 box_of(std::uint32_t node) const {
@@ -195,7 +156,7 @@ class BeamBody {
   std::vector<SphereCircle> circles_of(std::uint32_t node, std::vector<Coedge>& coedges) const {
     std::vector<SphereCircle> circles;
     std::vector<ArcEnds> ends;
-    const auto seen = [&](std::uint32_t vertex) { return unit(geometry_->vertices[vertex] - at(node)); };
+    const auto seen = [&](std::uint32_t vertex) { return unit(geometry_.vertices[vertex] - at(node)); };
     const auto add = [&](std::array<std::uint32_t, 2> vertex, Vec3 axis, double angle, bool is_whole, Coedge coedge) {
       circles.back().arcs.push_back({.axis = axis,
                                      .angle = angle,
@@ -253,13 +214,13 @@ class BeamBody {
   void add_ball(std::uint32_t node) {
     const double r = graph_.nodes[node].radius;
     const Vec3 up{0, 0, r};
-    const auto vertex = static_cast<std::uint32_t>(geometry_->vertices.size());
-    const auto edge = static_cast<std::uint32_t>(geometry_->edges.size());
-    geometry_->vertices.push_back(at(node) - up);
-    geometry_->vertices.push_back(at(node) + up);
-    geometry_->edges.push_back({.curve = Circle{{at(node), {0, -1, 0}, {1, 0, 0}}, r}, .vertex = {vertex, vertex + 1}});
+    const auto vertex = static_cast<std::uint32_t>(geometry_.vertices.size());
+    const auto edge = static_cast<std::uint32_t>(geometry_.edges.size());
+    geometry_.vertices.push_back(at(node) - up);
+    geometry_.vertices.push_back(at(node) + up);
+    geometry_.edges.push_back({.curve = Circle{{at(node), {0, -1, 0}, {1, 0, 0}}, r}, .vertex = {vertex, vertex + 1}});
     for (const std::uint32_t pole : {vertex, vertex + 1})
-      geometry_->edges.push_back({.curve = Line{}, .vertex = {pole, pole}, .degenerate = true});
+      geometry_.edges.push_back({.curve = Line{}, .vertex = {pole, pole}, .degenerate = true});
     FaceTemplate face{.surface = SphereSurface{{at(node)}, r}};
     face.loops = {{{.edge = edge + 1}, {.edge = edge}, {.edge = edge + 2}, {.edge = edge, .reversed = true}}};
     face.moments.area = 4 * pi * r * r;
@@ -268,52 +229,25 @@ class BeamBody {
       face.moments.centroid_moment[i] = at(node)[i] * ball_volume(r);
     }
     face.box = box_of(node);
-    add(std::move(face), 0);
+    faces_.add(std::move(face));
   }
 
-  [[nodiscard]] int sides(const EdgeTemplate& edge, const MeshFineness& fineness) const {
-    const auto* circle = std::get_if<Circle>(&edge.curve);
-    return circle == nullptr ? 1 : sides_of(circle->radius, fineness.deflection, fineness.angle);
-  }
-
-  /// The points of a use of an edge, its end left out.
-  void append_points(const Coedge& use, const MeshFineness& fineness, std::vector<Vec3>& out) const {
-    const EdgeTemplate& edge = geometry_->edges[use.edge];
-    std::vector<Vec3> inner = inner_points(edge, *geometry_, sides(edge, fineness));
-    if (use.reversed) std::ranges::reverse(inner);
-    out.push_back(geometry_->vertices[edge.vertex[use.reversed ? 1 : 0]]);
-    out.insert(out.end(), inner.begin(), inner.end());
-  }
-
-  [[nodiscard]] std::optional<Triangulation> mesh_of(const SphereSurface& sphere, const FaceTemplate& face,
-                                                     const MeshFineness& fineness) const {
-    if (geometry_->edges[face.loops[0][0].edge].degenerate) {  // a ball alone
-      const double r = sphere.radius;
-      const Ellipsoid ball{{Mat3::from_columns({r, 0, 0}, {0, r, 0}, {0, 0, r}), sphere.frame.origin}};
-      return brep::mesh_of(ball, fineness.deflection, fineness.angle);
-    }
-    std::vector<std::vector<Vec3>> loops;
-    std::vector<Vec3> holes;
-    for (const auto& uses : face.loops) {
-      loops.emplace_back();
-      for (const Coedge& use : uses) {
-        if (loops.size() == 1 && uses.size() == 4 && geometry_->edges[uses[2].edge].degenerate && &use != &uses[0])
-          break;  // the seam
-        append_points(use, fineness, loops.back());
-        const Vec3 off = std::get<Circle>(geometry_->edges[use.edge].curve).frame.origin - sphere.frame.origin;
-        if (norm(off) > 1e-6 * sphere.radius) holes.push_back(unit(off));
-      }
-    }
-    return sphere_mesh(sphere, loops, fineness.deflection, fineness.angle, holes);
+  [[nodiscard]] std::vector<Vec3> inner_points_of(std::uint32_t edge, const MeshFineness& fineness) const {
+    const EdgeTemplate& e = geometry_.edges[edge];
+    const auto* circle = std::get_if<Circle>(&e.curve);
+    const int sides = circle == nullptr ? 1 : sides_of(circle->radius, fineness.deflection, fineness.angle);
+    return inner_points(e, geometry_, sides);
   }
 
   [[nodiscard]] Triangulation mesh_of_strut(std::uint32_t s, const MeshFineness& fineness) const {
     const Rings::Seam& seam = rings_.seam(s);
     const Vec3 axis = joints_.direction(2 * s), y = cross(axis, seam.direction);
+    const auto inner = [&](std::uint32_t edge, const MeshFineness& f) { return inner_points_of(edge, f); };
     std::array<std::vector<RingPoint>, 2> rings;
     for (const std::uint32_t end : {0u, 1u}) {
       std::vector<Vec3> points;
-      for (const Coedge& use : rings_.around(2 * s + end, seam.vertex[end])) append_points(use, fineness, points);
+      for (const Coedge& use : rings_.around(2 * s + end, seam.vertex[end]))
+        faces_.append_points(use, inner, fineness, points);
       // The second ring runs the other way about the axis.
       if (end == 1) std::reverse(points.begin() + 1, points.end());
       for (const Vec3& p : points) {
@@ -346,11 +280,9 @@ class BeamBody {
   const Joints& joints_;
   const BeamGraph& graph_;
   const LatticeOptions& options_;
-  std::shared_ptr<Template> geometry_ = std::make_shared<Template>();
+  BeamFaces faces_;
+  Template& geometry_ = faces_.geometry();
   Rings rings_;
-  std::vector<std::uint32_t> strut_of_face_;
-  std::vector<std::vector<std::uint32_t>> solids_;  ///< their faces, by the first node
-  std::vector<std::uint32_t>* faces_of_ = nullptr;
   AxisFrame axes_;
 };
 
@@ -375,15 +307,9 @@ std::optional<Body> beam_graph_body(const Joints& joints, const LatticeOptions& 
   };
   BeamBody body(joints, options);
   if (!body.make_faces()) return stopped(), std::nullopt;
-  if (options.mesh) {
-    constexpr int most_attempts = 5;
-    MeshFineness fineness = *options.mesh;
-    for (int attempt = 1; !body.make_mesh(fineness); ++attempt) {
-      if (stopped()) return {};
-      if (attempt == most_attempts) throw Standard_Failure("the circles of a ball could not be divided finely enough");
-      fineness.deflection /= 3;
-      fineness.angle /= 1.6;
-    }
+  if (!body.make_mesh()) {
+    if (stopped()) return {};
+    throw Standard_Failure("the circles of a ball could not be divided finely enough");
   }
   return body.finish();
 }

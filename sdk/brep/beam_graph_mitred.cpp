@@ -3,10 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
 #include <numbers>
 
 #include "beam_graph_ball_faces.hpp"
+#include "beam_graph_faces.hpp"
 #include "beam_graph_joints.hpp"
 #include "beam_graph_mesh.hpp"
 #include "beam_graph_mitre_edges.hpp"
@@ -14,7 +14,6 @@
 #include "beam_graph_rings.hpp"
 #include "beam_graph_sphere.hpp"
 #include "lattice/parallel.hpp"
-#include "lattice/union_find.hpp"
 #include "meso/base/number.hpp"
 #include "occt.hpp"
 
@@ -29,50 +28,29 @@ Vec3 across(Vec3 v) { return unit(cross(v, std::fabs(v.x) < 0.6 ? Vec3{1, 0, 0} 
 class MitredBody {
  public:
   MitredBody(const Joints& joints, const LatticeOptions& options)
-      : joints_(joints), graph_(joints.graph), options_(options), strut_(graph_.struts.size()) {}
+      : joints_(joints), graph_(joints.graph), options_(options), faces_(joints.graph), strut_(graph_.struts.size()) {}
 
   bool make(std::string& why) {
     if (!find_miters(why) || !make_edges(why)) return false;
-    UnionFind sets(static_cast<std::uint32_t>(graph_.nodes.size()));
-    for (const BeamGraph::Strut& s : graph_.struts) sets.join(s.node[0], s.node[1]);
-    solids_.resize(graph_.nodes.size());
     for (std::uint32_t n = 0; n < graph_.nodes.size(); ++n) {
-      faces_of_ = &solids_[sets.root(n)];
+      faces_.begin(n);
       if (!add_faces_of_ball(n, why)) return false;
     }
     for (std::uint32_t s = 0; s < graph_.struts.size(); ++s) {
-      faces_of_ = &solids_[sets.root(graph_.struts[s].node[0])];
+      faces_.begin(graph_.struts[s].node[0]);
       add_strut(s);
     }
     return is_closed(why);
   }
 
-  /// False: edges are divided too coarsely, or the run was to stop.
-  bool make_mesh(const MeshFineness& fineness) {
-    return in_parallel(geometry_->faces.size(), options_.run, [&](std::size_t, std::size_t f) {
-      FaceTemplate& face = geometry_->faces[f];
-      face.mesh = {};
-      if (const auto* sphere = std::get_if<SphereSurface>(&face.surface)) {
-        if (auto mesh = mesh_of(*sphere, face, fineness)) face.mesh = std::move(*mesh);
-      } else {
-        face.mesh = mesh_of_strut(strut_of_face_[f], fineness);
-      }
-      return !face.mesh.triangles.empty();
-    });
+  /// False: edges could not be divided finely enough, or the run was to stop.
+  bool make_mesh() {
+    return faces_.mesh(
+        options_, [&](std::uint32_t edge, const MeshFineness& fineness) { return inner_points_of(edge, fineness); },
+        [&](std::uint32_t strut, const MeshFineness& fineness) { return mesh_of_strut(strut, fineness); });
   }
 
-  Body finish() {
-    Body body;
-    for (auto& faces : solids_) {
-      if (faces.empty()) continue;
-      const auto visit = [list = std::make_shared<const std::vector<std::uint32_t>>(std::move(faces))](
-                             const std::function<void(const FaceInstance&)>& callback) {
-        for (const std::uint32_t face : *list) callback({face, {0, 0, 0}});
-      };
-      body.solids.push_back({Shell{geometry_, {}, visit}, {}});
-    }
-    return body;
-  }
+  Body finish() { return faces_.body(); }
 
  private:
   [[nodiscard]] Vec3 at(std::uint32_t node) const { return graph_.nodes[node].position; }
@@ -169,7 +147,7 @@ class MitredBody {
         }
         seams.push_back(turn_at(l, strut_[l / 2].seam));
       }
-      auto edges = mitre_edges(miters_[n], at(n), seams, *geometry_, arcs_);
+      auto edges = mitre_edges(miters_[n], at(n), seams, geometry_, arcs_);
       if (!edges) {
         why = "struts at the node " + place(n) + " do not end at each other alike";
         return false;
@@ -179,24 +157,18 @@ class MitredBody {
     for (std::uint32_t s = 0; s < strut_.size(); ++s) {
       const auto vertex = [&](Leaving l) {
         const Coedge& first = ring(l).front();
-        return geometry_->edges[first.edge].vertex[first.reversed ? 1 : 0];
+        return geometry_.edges[first.edge].vertex[first.reversed ? 1 : 0];
       };
       const std::array ends{vertex(2 * s), vertex(2 * s + 1)};
-      const Vec3 from = geometry_->vertices[ends[0]], to = geometry_->vertices[ends[1]];
-      strut_[s].edge = static_cast<std::uint32_t>(geometry_->edges.size());
-      geometry_->edges.push_back({.curve = Line{from, unit(to - from)}, .vertex = ends});
-      arcs_.resize(geometry_->edges.size());
+      const Vec3 from = geometry_.vertices[ends[0]], to = geometry_.vertices[ends[1]];
+      strut_[s].edge = static_cast<std::uint32_t>(geometry_.edges.size());
+      geometry_.edges.push_back({.curve = Line{from, unit(to - from)}, .vertex = ends});
+      arcs_.resize(geometry_.edges.size());
     }
     return true;
   }
   /// From the seam around the strut, counter-clockwise about its way from the node.
   [[nodiscard]] const std::vector<Coedge>& ring(Leaving l) const { return rings_[joints_.node(l)].around[place_of(l)]; }
-
-  void add(FaceTemplate face, std::uint32_t strut) {
-    faces_of_->push_back(static_cast<std::uint32_t>(geometry_->faces.size()));
-    geometry_->faces.push_back(std::move(face));
-    strut_of_face_.push_back(strut);
-  }
 
   void add_strut(std::uint32_t s) {
     const auto& [node, radius] = graph_.struts[s];
@@ -221,7 +193,7 @@ class MitredBody {
       face.box.extend(at(node[end]) - reach);
       face.box.extend(at(node[end]) + reach);
     }
-    add(std::move(face), s);
+    faces_.add(std::move(face), s);
   }
   [[nodiscard]] const Stub& stub(Leaving l) const { return miters_[joints_.node(l)].stubs()[place_of(l)]; }
 
@@ -279,11 +251,11 @@ class MitredBody {
   bool add_faces_of_ball(std::uint32_t n, std::string& why) {
     const Vec3 centre = at(n);
     const double radius = graph_.nodes[n].radius;
-    const auto seen = [&](std::uint32_t vertex) { return unit(geometry_->vertices[vertex] - centre); };
+    const auto seen = [&](std::uint32_t vertex) { return unit(geometry_.vertices[vertex] - centre); };
     std::vector<SphereArc> arcs;
     std::vector<std::array<std::uint32_t, 2>> ends;
     for (const BallArc& a : rings_[n].on_ball) {
-      const auto& vertex = geometry_->edges[a.edge].vertex;
+      const auto& vertex = geometry_.edges[a.edge].vertex;
       const Stub& s = miters_[n].stubs()[a.stub];
       arcs.push_back({.axis = s.axis,
                       .angle = std::atan2(s.radius + s.growth * s.leaves_ball, s.leaves_ball),
@@ -322,7 +294,7 @@ class MitredBody {
       auto& polygon = polygons.emplace_back();
       for (const SphereArc& arc : loop) {
         polygon.push_back(arc.from);
-        std::vector<Vec3> inner = inner_points(geometry_->edges[arc.id], *geometry_, 32);
+        std::vector<Vec3> inner = inner_points(geometry_.edges[arc.id], geometry_, 32);
         for (auto p = inner.rbegin(); p != inner.rend(); ++p) polygon.push_back(unit(*p - centre));
       }
     }
@@ -339,44 +311,27 @@ class MitredBody {
         auto& uses = face.loops.emplace_back();
         for (const SphereArc& arc : loop) uses.push_back({.edge = arc.id, .reversed = true});
       }
-      if (arcs.size() == 1) add_seam(n, arcs[0].axis, face);
+      if (arcs.size() == 1) faces_.add_seam(n, arcs[0].axis, face);
       face.moments = sphere_moments(centre, radius, own);
       const Vec3 r{radius, radius, radius};
       face.box = {centre - r, centre + r};
-      add(std::move(face), 0);
+      faces_.add(std::move(face));
     }
     return true;
   }
 
-  /// A sphere with one circle: readers know it by a seam from the circle to the pole across.
-  void add_seam(std::uint32_t node, Vec3 axis, FaceTemplate& face) {
-    const double r = graph_.nodes[node].radius;
-    const std::uint32_t start = geometry_->edges[face.loops[0][0].edge].vertex[0];
-    const Vec3 x = unit(geometry_->vertices[start] - at(node)), side = unit(x - dot(x, axis) * axis);
-    const auto pole = static_cast<std::uint32_t>(geometry_->vertices.size());
-    const auto seam = static_cast<std::uint32_t>(geometry_->edges.size());
-    geometry_->vertices.push_back(at(node) - r * axis);
-    geometry_->edges.push_back({.curve = Circle{{at(node), unit(cross(side, -axis)), x}, r}, .vertex = {start, pole}});
-    geometry_->edges.push_back({.curve = Line{}, .vertex = {pole, pole}, .degenerate = true});
-    arcs_.resize(geometry_->edges.size());
-    std::get<SphereSurface>(face.surface).frame = {at(node), axis, side};
-    face.loops[0].push_back({.edge = seam});
-    face.loops[0].push_back({.edge = seam + 1});
-    face.loops[0].push_back({.edge = seam, .reversed = true});
-  }
-
   /// By the faces alone: as vectors they add up to nothing, and enclose one volume whatever is counted along.
   bool is_closed(std::string& why) const {
-    for (const auto& faces : solids_) {
+    for (const auto& faces : faces_.solids()) {
       FaceMoments sum;
       Box3 box;
       for (const std::uint32_t f : faces) {
-        const FaceMoments& m = geometry_->faces[f].moments;
+        const FaceMoments& m = geometry_.faces[f].moments;
         sum.area += m.area;
         sum.vector_area += m.vector_area;
         sum.volume_moment += m.volume_moment;
-        box.extend(geometry_->faces[f].box.min);
-        box.extend(geometry_->faces[f].box.max);
+        box.extend(geometry_.faces[f].box.min);
+        box.extend(geometry_.faces[f].box.max);
       }
       if (faces.empty()) continue;
       const Vec3 v = sum.volume_moment;
@@ -389,38 +344,14 @@ class MitredBody {
     return true;
   }
 
-  [[nodiscard]] std::vector<Vec3> inner_points_of(const EdgeTemplate& edge, std::uint32_t number,
-                                                  const MeshFineness& fineness) const {
+  [[nodiscard]] std::vector<Vec3> inner_points_of(std::uint32_t number, const MeshFineness& fineness) const {
+    const EdgeTemplate& edge = geometry_.edges[number];
     if (edge.degenerate || std::holds_alternative<Line>(edge.curve)) return {};
-    const MitreArc& arc = arcs_[number];
     if (const auto* circle = std::get_if<Circle>(&edge.curve))
-      return inner_points(edge, *geometry_, sides_of(circle->radius, fineness.deflection, fineness.angle));
+      return inner_points(edge, geometry_, sides_of(circle->radius, fineness.deflection, fineness.angle));
+    const MitreArc& arc = arcs_[number];
     const int sides = sides_of(arc.radius, fineness.deflection, fineness.angle);
     return arc.points(std::max(1, static_cast<int>(std::ceil(sides * arc.sweep / (2 * pi)))));
-  }
-
-  void append_points(const Coedge& use, const MeshFineness& fineness, std::vector<Vec3>& out) const {
-    const EdgeTemplate& edge = geometry_->edges[use.edge];
-    std::vector<Vec3> inner = inner_points_of(edge, use.edge, fineness);
-    if (use.reversed) std::ranges::reverse(inner);
-    out.push_back(geometry_->vertices[edge.vertex[use.reversed ? 1 : 0]]);
-    out.insert(out.end(), inner.begin(), inner.end());
-  }
-
-  [[nodiscard]] std::optional<Triangulation> mesh_of(const SphereSurface& sphere, const FaceTemplate& face,
-                                                     const MeshFineness& fineness) const {
-    std::vector<std::vector<Vec3>> loops;
-    std::vector<Vec3> holes;
-    for (const auto& uses : face.loops) {
-      loops.emplace_back();
-      for (const Coedge& use : uses) {
-        if (uses.size() == 4 && geometry_->edges[uses[2].edge].degenerate && &use != &uses[0]) break;  // the seam
-        append_points(use, fineness, loops.back());
-        const Vec3 off = std::get<Circle>(geometry_->edges[use.edge].curve).frame.origin - sphere.frame.origin;
-        if (norm(off) > 1e-6 * sphere.radius) holes.push_back(unit(off));
-      }
-    }
-    return sphere_mesh(sphere, loops, fineness.deflection, fineness.angle, holes);
   }
 
   [[nodiscard]] Triangulation mesh_of_strut(std::uint32_t s, const MeshFineness& fineness) const {
@@ -429,9 +360,10 @@ class MitredBody {
     const MitredStrut strut{
         at(graph_.struts[s].node[0]),      x, cross(own.axis, x), own.axis, own.radius, own.growth, farthest(2 * s),
         length_of(s) - farthest(2 * s + 1)};
+    const auto inner = [&](std::uint32_t edge, const MeshFineness& f) { return inner_points_of(edge, f); };
     std::array<std::vector<Vec3>, 2> borders;
     for (const std::uint32_t end : {0u, 1u})
-      for (const Coedge& use : ring(2 * s + end)) append_points(use, fineness, borders[end]);
+      for (const Coedge& use : ring(2 * s + end)) faces_.append_points(use, inner, fineness, borders[end]);
     std::reverse(borders[1].begin() + 1, borders[1].end());  // it runs the other way about the axis
     return mitred_mesh(strut, borders);
   }
@@ -439,7 +371,8 @@ class MitredBody {
   const Joints& joints_;
   const BeamGraph& graph_;
   const LatticeOptions& options_;
-  std::shared_ptr<Template> geometry_ = std::make_shared<Template>();
+  BeamFaces faces_;
+  Template& geometry_ = faces_.geometry();
   std::vector<NodeMiters> miters_;  ///< by node
   std::vector<NodeEdges> rings_;    ///< by node
   std::vector<MitreArc> arcs_;      ///< by edge
@@ -448,9 +381,6 @@ class MitredBody {
     std::uint32_t edge = 0;
   };
   std::vector<StrutSeam> strut_;
-  std::vector<std::uint32_t> strut_of_face_;
-  std::vector<std::vector<std::uint32_t>> solids_;  ///< their faces, by the first node
-  std::vector<std::uint32_t>* faces_of_ = nullptr;
   AxisFrame axes_;
 };
 
@@ -467,17 +397,9 @@ std::optional<Body> mitred_body(const BeamGraph& graph, const LatticeOptions& op
   if (!joints) return {};
   MitredBody body(*joints, options);
   if (!body.make(why)) return {};
-  if (options.mesh) {
-    constexpr int most_attempts = 5;
-    MeshFineness fineness = *options.mesh;
-    for (int attempt = 1; !body.make_mesh(fineness); ++attempt) {
-      if (options.run.should_stop() || attempt == most_attempts) {
-        why = "a ball cannot be meshed";
-        return {};
-      }
-      fineness.deflection /= 3;
-      fineness.angle /= 1.6;
-    }
+  if (!body.make_mesh()) {
+    why = "a ball cannot be meshed";
+    return {};
   }
   return body.finish();
 }
