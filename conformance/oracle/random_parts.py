@@ -31,6 +31,7 @@ import xml.etree.ElementTree as ElementTree
 
 import membership
 from bent_parts import bent_truss, grown_truss
+from joined_parts import joined
 from membership import (REFUSALS, box, boolean, cell_section, cone, document, in_boxed, loops, moved, number, random_tree,
                         rotation, sphere, truss, turned)
 from nested_parts import nested
@@ -156,7 +157,7 @@ def imported(rng, folder, meso):
     return lattice_in_body(rng, plain_truss, at_most=2, body=(import_text, in_import))
 
 
-KINDS = {f.__name__: f for f in (offset, set_by_index, solids_in_cells, imported, bent_truss, grown_truss, nested)}
+KINDS = {f.__name__: f for f in (offset, set_by_index, solids_in_cells, imported, bent_truss, grown_truss, nested, joined)}
 for known, make in membership.KINDS.items():
     KINDS[known] = lambda rng, folder, meso, make=make: make(rng)
 

@@ -12,6 +12,7 @@
 #include "meso/eval/pattern_reach.hpp"
 #include "realise_beam_graph.hpp"
 #include "realise_boundary.hpp"
+#include "realise_joined.hpp"
 #include "realise_lattice.hpp"
 #include "realise_part.hpp"
 #include "solid_primitive.hpp"
@@ -112,6 +113,8 @@ std::optional<FoldedPart> PartFold::fold(const Part& part, bool is_outermost) {
   for (std::size_t i = 0; i < part.steps.size(); ++i) {
     options_.run.report("realise", static_cast<double>(i) / static_cast<double>(part.steps.size()));
     const bool last = i + 1 == part.steps.size();
+    if (is_outermost && may_join(part, i, state.solids) && try_joined(state, part, i)) return state;
+    if (context_.sink.has_errors()) return {};
     if (!step(state, part, part.steps[i], is_outermost && last)) return {};
   }
   return state;
@@ -214,7 +217,7 @@ bool PartFold::try_lattice(FoldedPart& state, const eval::CellStream& cells, con
   std::optional<CellRule> whole_cells;
   if (const auto rule = apply.boundary.value_or(BoundaryRule::clip); rule != BoundaryRule::clip)
     whole_cells = CellRule{rule, apply.test.value_or(InsideTest::box), context.clearance};
-  auto lattice = lattice_part(state.solids, cells, whole_cells, mesh, context_);
+  auto lattice = lattice_part({.clip = state.solids, .whole_cells = whole_cells, .mesh = mesh}, cells, context_);
   if (!lattice) return false;
   state.counts.placed += cells.size();
   state.counts.kept += lattice->kept;
@@ -236,6 +239,40 @@ bool PartFold::try_lattice(FoldedPart& state, const eval::CellStream& cells, con
     }
   }
   state.body = std::move(lattice->body);
+  state.way = "lattice";
+  return true;
+}
+
+bool PartFold::try_joined(FoldedPart& state, const Part& part, std::size_t at) {
+  const Apply& pattern_step = part.steps[at];
+  const Pattern* pattern = evaluation_.find_pattern(pattern_step.pattern->text);
+  const auto cells = pattern != nullptr ? evaluation_.cells(*pattern, context_.sink) : std::nullopt;
+  if (!cells || cells->size() > options_.run.max_cells || !cells->lattice() || cells->shape_varies()) return false;
+  if (strut_thickness(*cells, context_.sink).ratio() > 0.5) return false;
+  if (!eval::check_reach(evaluation_, *cells, pattern_step, part, box_of_all(state.solids), {}, context_.sink))
+    return false;
+  CellCounts counts = state.counts;
+  std::vector<BodyStep> rest;
+  for (std::size_t i = at + 1; i < part.steps.size(); ++i) {
+    auto operand = placed_operand(part.steps[i], counts);
+    if (!operand) return false;
+    rest.push_back({&part.steps[i], std::move(*operand)});
+  }
+  DiagnosticSink apart;  // the usual way tells again what is wrong with the bodies
+  const SolidContext solid_context{context_.source, context_.run, apart, this};
+  const FoldContext context{solid_context, pattern_step, 0, options_.max_boolean_solids};
+  auto made = joined_lattice(state.solids, pattern_step, *cells, rest, fineness(options_), context);
+  for (const Diagnostic& d : apart.diagnostics())
+    if (made || d.code == Code::geometry_not_repeatable) context_.sink.report(d);
+  if (!made) return false;
+  if (const Part* inner = part_in_cells(*pattern)) counts = sum_of(counts, counts_inside(*inner));
+  counts.placed += cells->size();
+  counts.kept += made->part.kept;
+  counts.crossing += made->part.crossing;
+  counts.fragments += made->fragments;
+  state.counts = counts;
+  state.clip = std::move(made->part.clip);
+  state.body = std::move(made->part.body);
   state.way = "lattice";
   return true;
 }
@@ -266,14 +303,19 @@ std::optional<FoldStep> PartFold::apply_beams(FoldedPart& state, const eval::Cel
 }
 
 std::optional<FoldStep> PartFold::apply_part(FoldedPart& state, const FoldContext& context) {
-  const Part* part = evaluation_.find_part(context.apply.part->text);
-  const auto placement = evaluation_.placement(context.apply.placement, context_.sink);
+  const auto solids = placed_operand(context.apply, state.counts);
+  return solids ? apply_solids(state.solids, *solids, context) : std::nullopt;
+}
+
+std::optional<Solids> PartFold::placed_operand(const Apply& apply, CellCounts& counts) {
+  const Part* part = evaluation_.find_part(apply.part->text);
+  const auto placement = evaluation_.placement(apply.placement, context_.sink);
   const Operand* operand = part != nullptr && placement ? operand_of(*part) : nullptr;
   if (operand == nullptr) return {};
-  state.counts = sum_of(state.counts, without_fragments(operand->counts));
+  counts = sum_of(counts, without_fragments(operand->counts));
   Solids solids = operand->solids;
   for (TopoDS_Shape& solid : solids) solid = mapped(solid, *placement);
-  return apply_solids(state.solids, solids, context);
+  return solids;
 }
 
 const PartFold::Operand* PartFold::operand_of(const Part& part) {

@@ -7,7 +7,6 @@
 #include "boolean.hpp"
 #include "box_lattice.hpp"
 #include "lattice/cells_of_boxes.hpp"
-#include "lattice/clipped_lattice.hpp"
 #include "solid_primitive.hpp"
 #include "solid_shape.hpp"
 
@@ -178,32 +177,52 @@ std::optional<CellShape> repeated_cell(const eval::Shape& shape, const eval::Box
   return CellShape{.box = bounds, .solids = std::move(*solids), .primitives = {}};
 }
 
-/// A lattice of boxes side by side, and the body in the frame of its first cell.
+/// Around all that the cells of a lattice reach, without `removed`.
+std::optional<Solids> all_but(const Solids& removed, const BoxLattice& lattice, const SolidContext& context) {
+  constexpr int margin = 3;  // of boxes
+  Vec3 first = lattice.box.corner, last = first;
+  for (std::size_t a = 0; a < 3; ++a) {
+    first[a] -= margin * lattice.box.size[a];
+    last[a] += (lattice.count[a] + margin) * lattice.box.size[a];
+  }
+  return brep::cut({BRepPrimAPI_MakeBox(to_pnt(first), to_pnt(last)).Solid()}, removed, {}, context);
+}
+
+/// A lattice of boxes side by side, and the bodies in the frame of its first cell.
 struct Found {
   BoxLattice lattice;
   CellShape cell;
-  Solids body;                           ///< empty: the union of all cells
+  Solids body;  ///< empty: the union of all cells
+  Solids added;
   std::shared_ptr<const Blocks> blocks;  ///< where the body's faces all lie on planes of the boxes
 };
 
-std::optional<Found> find_lattice(const Solids& macrostructure, const eval::CellStream& cells, bool may_refine,
+std::optional<Found> find_lattice(const LatticeRequest& request, const eval::CellStream& cells, bool may_refine,
                                   const SolidContext& context) {
   const auto lattice = box_lattice(cells, may_refine, context);
   if (!lattice) return {};
-  Solids in_cell_frame;
-  for (const TopoDS_Shape& solid : macrostructure)
-    in_cell_frame.push_back(mapped(solid, inverse(lattice->world_from_cell)));
-  if (macrostructure.empty() && lattice->cut) in_cell_frame.push_back(all_boxes(*lattice));
+  const auto from_world = [&](Solids solids) {
+    for (TopoDS_Shape& solid : solids) solid = mapped(solid, inverse(lattice->world_from_cell));
+    return solids;
+  };
+  Solids in_cell_frame = from_world(request.clip);
+  if (request.clip.empty() && !request.removed.empty()) {
+    auto left = all_but(from_world(request.removed), *lattice, context);
+    if (!left || left->empty()) return {};
+    in_cell_frame = std::move(*left);
+  } else if (request.clip.empty() && lattice->cut) {
+    in_cell_frame.push_back(all_boxes(*lattice));
+  }
   auto cell = repeated_cell(lattice->shape, lattice->box, context);
   if (!cell) return {};
   // What sticks out of a box within a cell stays: cutting it is the same only if the next box has it, too.
   if (lattice->is_cut_by_cells && !reach_of(*cell).neighbours.empty())
-    return find_lattice(macrostructure, cells, false, context);
+    return find_lattice(request, cells, false, context);
   cell->cut_to_box = lattice->cut;
   std::shared_ptr<const Blocks> blocks;
   if (const auto planes = face_planes(in_cell_frame, *lattice); planes && !in_cell_frame.empty())
     blocks = std::make_shared<const Blocks>(in_cell_frame, *lattice, *planes);
-  return Found{*lattice, std::move(*cell), std::move(in_cell_frame), std::move(blocks)};
+  return Found{*lattice, std::move(*cell), std::move(in_cell_frame), from_world(request.added), std::move(blocks)};
 }
 
 void place(Body& body, const Affine& world_from_body) {
@@ -263,11 +282,15 @@ Thickness strut_thickness(const eval::CellStream& cells, DiagnosticSink& sink) {
 namespace {
 
 /// Where a line of a body ends in the pole of a ball, a second attempt keeps poles out of the cell.
-std::optional<ClippedLattice> clipped_lattice(const Found& found, const Index3& last,
-                                              const std::optional<MeshFineness>& mesh, const SolidContext& context) {
+std::optional<ClippedLattice> clipped_lattice(const Found& found, const Index3& last, const LatticeRequest& request,
+                                              const SolidContext& context) {
+  const ClipOptions options{.mesh = request.mesh,
+                            .reuse = true,
+                            .block = found.lattice.block,
+                            .pieces = request.pieces,
+                            .added = found.added};
   const auto attempt = [&](const CellShape& cell, DiagnosticSink& sink) {
-    return clipped_lattice_body(cell, last, found.body, {.mesh = mesh, .reuse = true, .block = found.lattice.block},
-                                context.run, sink);
+    return clipped_lattice_body(cell, last, found.body, options, context.run, sink);
   };
   DiagnosticSink first, second;
   auto made = attempt(found.cell, first);
@@ -281,18 +304,31 @@ std::optional<ClippedLattice> clipped_lattice(const Found& found, const Index3& 
   return made;
 }
 
+std::optional<ConnectedPieces> in_world(const std::shared_ptr<const LatticePieces>& pieces,
+                                        const Affine& world_from_cell) {
+  if (!pieces) return {};
+  ConnectedPieces out;
+  for (const std::optional<Vec3>& p : pieces->points())
+    out.points.push_back(p ? std::optional(world_from_cell * *p) : std::nullopt);
+  out.at = [pieces, back = inverse(world_from_cell)](Vec3 p) { return pieces->at(back * p); };
+  return out;
+}
+
 }  // namespace
 
-std::optional<LatticePart> lattice_part(const Solids& macrostructure, const eval::CellStream& cells,
-                                        const std::optional<CellRule>& whole_cells,
-                                        const std::optional<MeshFineness>& mesh, const SolidContext& context) {
-  const auto found = find_lattice(macrostructure, cells, !whole_cells, context);
+std::optional<LatticePart> lattice_part(const LatticeRequest& request, const eval::CellStream& cells,
+                                        const SolidContext& context) {
+  const auto& whole_cells = request.whole_cells;
+  // Pieces are told by boxes, however well the body fits them.
+  const bool joins = !request.added.empty() || request.pieces != PiecesAsked::none;
+  if (joins && whole_cells) return {};
+  const auto found = find_lattice(request, cells, !whole_cells, context);
   if (!found) return {};
   const auto& count = found->lattice.count;
   const Index3 last{count[0] - 1, count[1] - 1, count[2] - 1};
-  const LatticeOptions options{.mesh = mesh, .run = context.run};
+  const LatticeOptions options{.mesh = request.mesh, .run = context.run};
   LatticePart out;
-  if (whole_cells || found->body.empty()) {
+  if (whole_cells || (found->body.empty() && !joins)) {
     CellSelection taken{{{}, last, [](Index3) { return true; }}, cells.size(), 0};
     if (whole_cells) {
       auto selected = select_cells(found->cell, last, found->body, *whole_cells, context.run, context.sink);
@@ -305,7 +341,7 @@ std::optional<LatticePart> lattice_part(const Solids& macrostructure, const eval
     if (!body) return {};
     out.body = std::move(*body);
     out.body.fragments = 0;
-  } else if (found->blocks) {
+  } else if (found->blocks && !joins) {
     out.kept = found->blocks->kept_cells(found->lattice);
     if (out.kept == 0) return out;
     const LatticeSet set{.min = {0, 0, 0}, .max = last, .inside = [blocks = found->blocks](Index3 index) {
@@ -315,9 +351,11 @@ std::optional<LatticePart> lattice_part(const Solids& macrostructure, const eval
     if (!body) return {};
     out.body = std::move(*body);
   } else {
-    auto clipped = clipped_lattice(*found, last, mesh, context);
+    auto clipped = clipped_lattice(*found, last, request, context);
     if (!clipped) return {};
     out = {std::move(clipped->body), clipped->kept, clipped->crossing, std::move(clipped->clip)};
+    out.cut = in_world(clipped->cut, found->lattice.world_from_cell);
+    out.joined = in_world(clipped->joined, found->lattice.world_from_cell);
   }
   place(out.body, found->lattice.world_from_cell);
   return out;
@@ -325,7 +363,7 @@ std::optional<LatticePart> lattice_part(const Solids& macrostructure, const eval
 
 std::optional<LatticeSample> lattice_sample(const Solids& macrostructure, const eval::CellStream& cells,
                                             const std::optional<MeshFineness>& mesh, const SolidContext& context) {
-  const auto found = find_lattice(macrostructure, cells, true, context);
+  const auto found = find_lattice({.clip = macrostructure}, cells, true, context);
   if (!found || !found->blocks) return {};
   LatticeSample out{{}, found->blocks->kept_cells(found->lattice)};
   if (out.kept == 0) return out;

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "lattice/cell_selection.hpp"
+#include "lattice/clipped_lattice.hpp"
 #include "meso/brep/body_sample.hpp"
 #include "meso/brep/lattice_body.hpp"
 #include "meso/brep/realise.hpp"
@@ -14,19 +15,33 @@
 
 namespace meso::brep {
 
+/// Connected solids: a point in each, where that is known, and which one a point is in.
+struct ConnectedPieces {
+  std::vector<std::optional<Vec3>> points;
+  std::function<std::optional<std::size_t>(Vec3)> at;
+};
+
 struct LatticePart {
   Body body;
   std::uint64_t kept = 0;
   std::uint64_t crossing = 0;
   ClipCounts clip{};
+  std::optional<ConnectedPieces> cut{}, joined{};  ///< before and after bodies are added, where they are asked for
 };
 
-/// Macrostructure n union of the cells, without a macrostructure the union of the cells, or of those that a boundary
-/// rule takes whole; or nothing, and no error in the sink, where that is not such a lattice. Errors of evaluation are
-/// reported. May throw Standard_Failure.
-[[nodiscard]] std::optional<LatticePart> lattice_part(const Solids& macrostructure, const eval::CellStream& cells,
-                                                      const std::optional<CellRule>& whole_cells,
-                                                      const std::optional<MeshFineness>& mesh,
+/// What becomes of the union of the cells.
+struct LatticeRequest {
+  Solids clip{};                          ///< what it is cut to; empty: nothing
+  Solids removed{};                       ///< where it is not cut to anything: what is taken away
+  Solids added{};                         ///< what it is united with after that
+  std::optional<CellRule> whole_cells{};  ///< the cells that this takes are not cut; nothing is removed or added
+  std::optional<MeshFineness> mesh{};
+  PiecesAsked pieces = PiecesAsked::none;  ///< where there is something to cut to, or to add
+};
+
+/// (Union of the cells n clip - removed) u added, as one repeated template; or nothing, and no error in the sink, where
+/// that is not such a lattice. Errors of evaluation are reported. May throw Standard_Failure.
+[[nodiscard]] std::optional<LatticePart> lattice_part(const LatticeRequest& request, const eval::CellStream& cells,
                                                       const SolidContext& context);
 
 /// The largest radius of the first cell's struts, by the longest edge of its box: from 0.5 on, struts of neighbours

@@ -2,6 +2,7 @@
 #pragma once
 // From the quotient and the kept cells to a Body: which faces stand where, and which of them make one shell. Private.
 
+#include <functional>
 #include <map>
 #include <optional>
 
@@ -14,7 +15,8 @@ namespace meso::brep {
 /// The kind of box each cell has: at first by which of the cells that matter to it exist in the pattern.
 class CellKinds {
  public:
-  CellKinds(const Reach& reach, const KeptCells& cells);
+  /// Nothing of the lattice is in boxes that are not asked for by `holds`.
+  CellKinds(const Reach& reach, const KeptCells& cells, const std::function<bool(Index3)>& holds = {});
   /// The parts of each of these kinds; kind 0 has all, some may have none.
   [[nodiscard]] const std::vector<std::vector<std::uint32_t>>& parts() const { return parts_; }
   [[nodiscard]] std::uint32_t of(const Index3& cell, const KeptCells& cells) const {

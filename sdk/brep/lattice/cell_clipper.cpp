@@ -9,8 +9,6 @@
 namespace meso::brep {
 namespace {
 
-constexpr double cell_deflection = 0.01;  ///< of the shortest edge of the box
-
 TopoDS_Shape moved(const TopoDS_Shape& shape, Vec3 by) {
   gp_Trsf move;
   move.SetTranslation(gp_Vec(by.x, by.y, by.z));
@@ -21,17 +19,22 @@ TopoDS_Shape moved(const TopoDS_Shape& shape, Vec3 by) {
 
 CellClipper::CellClipper(const std::vector<TopoDS_Shape>& solids, const BodySurface& surface, const CellGrid& grid,
                          const RunOptions& run)
-    : solids_(solids), surface_(surface), local_(surface, grid), grid_(grid), run_(run) {
+    : CellClipper(
+          [&solids, deflection = deflection_in(grid)](std::uint32_t kind) {
+            return solids[kind].IsNull() ? WholeCell{} : whole_cell(solids[kind], deflection);
+          },
+          surface, grid, run) {}
+
+CellClipper::CellClipper(std::function<WholeCell(std::uint32_t)> frame, const BodySurface& surface,
+                         const CellGrid& grid, const RunOptions& run)
+    : make_(std::move(frame)), surface_(surface), local_(surface, grid), grid_(grid), run_(run) {
   const TopoDS_Shape body = BRepBuilderAPI_Copy(surface.body()).Shape();
   for (TopExp_Explorer it(body, TopAbs_SOLID); it.More(); it.Next()) body_.emplace_back(it.Current());
 }
 
 WholeCell& CellClipper::whole(std::uint32_t kind) {
   const auto known = whole_.find(kind);
-  if (known != whole_.end()) return known->second;
-  const Vec3 size = grid_.size();
-  return whole_.emplace(kind, whole_cell(solids_[kind], cell_deflection * std::fmin(size.x, std::fmin(size.y, size.z))))
-      .first->second;
+  return known != whole_.end() ? known->second : whole_.emplace(kind, make_(kind)).first->second;
 }
 
 int CellClipper::side_of(Vec3 p) {
@@ -45,7 +48,6 @@ int CellClipper::side_of(Vec3 p) {
 }
 
 ClippedCell CellClipper::clip(std::uint32_t kind, const Index3& cell, const std::vector<std::uint32_t>& faces) {
-  if (solids_[kind].IsNull()) return {};
   const double a = grid_.tolerance;  // a millionth of the cell
   const std::array<Attempt, 6> ladder{{{},
                                        {.patches = false, .all_faces = true},
@@ -59,7 +61,9 @@ ClippedCell CellClipper::clip(std::uint32_t kind, const Index3& cell, const std:
   const double rough = rough_edge * std::fmin(size.x, std::fmin(size.y, size.z));
   for (std::size_t n = 0; n < ladder.size() && !run_.should_stop(); ++n) {
     try {
-      ClippedCell made = attempt(ladder[n], whole(kind), cell, faces);
+      WholeCell& all = whole(kind);
+      if (all.faces.empty()) return {};
+      ClippedCell made = attempt(ladder[n], all, cell, faces);
       made.attempts = n + 1;
       if (made.fault.empty() && made.edge_tolerance <= rough) return made;
       if (made.fault.empty() && (!best || made.edge_tolerance < best->edge_tolerance)) best = made;
@@ -100,8 +104,12 @@ ClippedCell CellClipper::attempt(const Attempt& how, WholeCell& whole, const Ind
     ranges.push_back({first, body.triangles.size()});
   }
   for (const std::size_t i : near.stand_for) body.of_face.push_back(ranges[i]);
-  body.contains = [&](Vec3 p) { return surface_.contains(p - to_cell); };
-  body.side = [&](Vec3 p) { return side_of(p - to_cell); };
+  // A frame is cut with what is not in the body.
+  const bool turned = whole.is_frame;
+  if (turned)
+    for (TopoDS_Shape& solid : body.faces) solid.Reverse();
+  body.contains = [this, to_cell, turned](Vec3 p) { return surface_.contains(p - to_cell) != turned; };
+  body.side = [this, to_cell, turned](Vec3 p) { return (turned ? -1 : 1) * side_of(p - to_cell); };
   const Vec3 size = grid_.size();
   return split_cell(whole, body, {how.all_faces, how.fuzzy, std::fmin(size.x, std::fmin(size.y, size.z))}, run_);
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// What a body leaves of the solid in one cell box: one checked boolean, in the cell's own frame. Private.
+// What a body leaves of the solid in one cell box, or adds to it: one checked boolean, in the cell's own frame.
+// Private.
 //
 // A result that does not pass the checks of cell_split, or whose edges are known to less than a thousandth of the cell,
 // is made again in other ways: with the whole faces of body and cell, with a fuzzy tolerance, with the body shifted by
@@ -9,6 +10,7 @@
 // Thread rule: one for each thread; it works on copies of its own, because OpenCASCADE writes to the shapes it reads.
 
 #include <deque>
+#include <functional>
 #include <map>
 #include <vector>
 
@@ -27,6 +29,9 @@ class CellClipper {
   /// `solids` are what the different kinds of box hold whole; null shapes are empty boxes.
   CellClipper(const std::vector<TopoDS_Shape>& solids, const BodySurface& surface, const CellGrid& grid,
               const RunOptions& run);
+  /// The union of box and body, by the frames of the kinds (box_frame); `frame` is asked once for each.
+  CellClipper(std::function<WholeCell(std::uint32_t)> frame, const BodySurface& surface, const CellGrid& grid,
+              const RunOptions& run);
 
   /// Box `cell`, of that kind, and the numbers of the faces that touch it.
   [[nodiscard]] ClippedCell clip(std::uint32_t kind, const Index3& cell, const std::vector<std::uint32_t>& faces);
@@ -42,7 +47,7 @@ class CellClipper {
                                     const std::vector<std::uint32_t>& faces);
   [[nodiscard]] int side_of(Vec3 p);
 
-  const std::vector<TopoDS_Shape>& solids_;
+  std::function<WholeCell(std::uint32_t)> make_;
   std::map<std::uint32_t, WholeCell> whole_;  ///< those that were asked for
   const BodySurface& surface_;
   LocalFaces local_;

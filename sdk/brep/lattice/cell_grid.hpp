@@ -29,6 +29,12 @@ struct CellGrid {
   }
   [[nodiscard]] Vec3 centre(const Index3& cell) const { return origin(cell) + 0.5 * size(); }
 
+  [[nodiscard]] bool has(const Index3& cell) const {
+    for (std::size_t i = 0; i < 3; ++i)
+      if (cell[i] < min[i] || cell[i] > max[i]) return false;
+    return true;
+  }
+
   /// Visits, in lexicographic order, the cells whose closed boxes grown by `by` meet `box`.
   template <typename Visit>
   void visit_near(const Box3& box, double by, Visit visit) const {
@@ -46,5 +52,10 @@ struct CellGrid {
         for (cell[2] = low[2]; cell[2] <= high[2]; ++cell[2]) visit(cell);
   }
 };
+
+/// Of the triangles of what is in a box.
+[[nodiscard]] inline double deflection_in(const CellGrid& grid) {
+  return 0.01 * std::min({grid.size().x, grid.size().y, grid.size().z});
+}
 
 }  // namespace meso::brep

@@ -9,22 +9,28 @@
 
 namespace meso::brep {
 
-CellKinds::CellKinds(const Reach& reach, const KeptCells& cells) : kinds_(cells.count(), 0) {
+CellKinds::CellKinds(const Reach& reach, const KeptCells& cells, const std::function<bool(Index3)>& holds)
+    : kinds_(cells.count(), 0) {
   parts_.push_back(reach.parts_with(true, ~std::uint64_t{0}));
   std::map<std::pair<bool, std::uint64_t>, std::uint32_t> known{{{true, ~std::uint64_t{0}}, 0}};
+  const auto number_of = [&](const std::vector<std::uint32_t>& parts) {
+    const auto number = static_cast<std::uint32_t>(std::ranges::find(parts_, parts) - parts_.begin());
+    if (number == parts_.size()) parts_.push_back(parts);
+    return number;
+  };
   for (std::uint32_t n = 0; n < cells.count(); ++n) {
     const Index3& cell = cells.cell(n);
+    if (holds && !holds(cell)) {
+      kinds_[n] = number_of({});
+      continue;
+    }
     const bool itself = cells.in_pattern(cell);
     const std::vector<Reach::Neighbour>& others = itself ? reach.neighbours : reach.rim;
     std::uint64_t present = ~std::uint64_t{0};  // neighbours that do not matter count as being there
     for (std::size_t i = 0; i < others.size(); ++i)
       if (!cells.in_pattern(cell + others[i].shift)) present &= ~(std::uint64_t{1} << i);
     const auto [it, fresh] = known.try_emplace({itself, present}, 0);
-    if (fresh) {
-      const std::vector<std::uint32_t> parts = reach.parts_with(itself, present);
-      it->second = static_cast<std::uint32_t>(std::find(parts_.begin(), parts_.end(), parts) - parts_.begin());
-      if (it->second == parts_.size()) parts_.push_back(parts);
-    }
+    if (fresh) it->second = number_of(reach.parts_with(itself, present));
     kinds_[n] = it->second;
   }
 }

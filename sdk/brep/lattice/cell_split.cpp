@@ -62,19 +62,31 @@ class CellSplit {
   const char* place_cell_pieces();
   const char* place_caps();
   const char* check_sums();
+  void take();
+  [[nodiscard]] bool is_changed() const;
+  [[nodiscard]] const char* join_taken(UnionFind& joined) const;
   ClippedCell result();
 
   /// Points of a set of pieces, on edges that are not of the other side and on whole faces.
   [[nodiscard]] std::vector<Vec3> points_on(const std::vector<std::uint32_t>& set, bool of_cell) const;
   [[nodiscard]] std::optional<Vec3> middle_of(const Piece& piece) const;
   [[nodiscard]] const FaceMoments& moments(std::size_t piece);
+  [[nodiscard]] bool is_whole(std::size_t piece) const { return piece < faces_.of_cell && faces_.pieces[piece].whole; }
+  [[nodiscard]] WholeCell::Role role(std::size_t piece) const {
+    return piece < faces_.of_cell ? cell_.faces[faces_.pieces[piece].of].role : WholeCell::Role::skin;
+  }
 
   WholeCell& cell_;
   const LocalBody& body_;
   SplitOptions options_;
   DividedFaces faces_;
   std::vector<std::vector<std::uint32_t>> sets_;
-  std::vector<bool> kept_;  ///< per piece
+  std::vector<bool> kept_;  ///< per piece: bounds what cell and body have in common
+  struct Taken {
+    std::uint32_t piece = 0;
+    bool reversed = false;
+  };
+  std::vector<Taken> taken_;  ///< bounds the result
   std::map<std::size_t, FaceMoments> moments_;
 };
 
@@ -243,12 +255,12 @@ const char* CellSplit::check_sums() {
     amiss += std::fabs(sum - cell_.faces[faces_.pieces[p].of].share);
     sum = 0;
   }
-  if (amiss > tiny * cell_.volume) return "the pieces of a cell do not add up to it";
+  if (amiss > tiny * (cell_.volume + cell_.left_out)) return "the pieces of a cell do not add up to it";
+  take();
   Vec3 area;
-  for (std::size_t p = 0; p < faces_.pieces.size(); ++p) {
-    if (!kept_[p]) continue;
-    const bool whole = p < faces_.of_cell && faces_.pieces[p].whole;
-    area += whole ? cell_.faces[faces_.pieces[p].of].area : moments(p).vector_area;
+  for (const auto& [p, reversed] : taken_) {
+    const bool whole = is_whole(p);
+    area += (reversed ? -1.0 : 1.0) * (whole ? cell_.faces[faces_.pieces[p].of].area : moments(p).vector_area);
     if (!whole && moments(p).area <= 2 * tiny * options_.size * extent_of(faces_.pieces[p].face))
       return "a piece of a face has no width";
   }
@@ -256,26 +268,51 @@ const char* CellSplit::check_sums() {
   return nullptr;
 }
 
-ClippedCell CellSplit::result() {
-  using Left = ClippedCell::Left;
-  bool changed =
-      faces_.pieces.size() > faces_.of_cell &&
-      std::any_of(kept_.begin() + static_cast<std::ptrdiff_t>(faces_.of_cell), kept_.end(), [](bool k) { return k; });
-  for (std::size_t p = 0; p < faces_.of_cell; ++p) changed = changed || !kept_[p] || !faces_.pieces[p].whole;
-  if (!changed) return {.left = Left::all};
-  UnionFind joined(faces_.pieces.size());
+/// Of a box it is what the common part of the space beside its solids leaves: faces of that turn round, and of the
+/// sides the other pieces are taken.
+void CellSplit::take() {
+  for (std::uint32_t p = 0; p < faces_.pieces.size(); ++p) {
+    const WholeCell::Role as = role(p);
+    const bool is_in =
+        !cell_.is_frame || as == WholeCell::Role::skin ? kept_[p] : as == WholeCell::Role::solid_wall || !kept_[p];
+    if (is_in) taken_.push_back({p, cell_.is_frame && as == WholeCell::Role::skin});
+  }
+}
+
+/// False if the result is the solid that was there before.
+bool CellSplit::is_changed() const {
+  std::size_t whole = 0, before = 0;
+  for (const Taken& taken : taken_) {
+    if (!is_whole(taken.piece) || role(taken.piece) == WholeCell::Role::open_wall) return true;
+    ++whole;
+  }
+  for (const WholeCell::Face& face : cell_.faces) before += face.role != WholeCell::Role::open_wall;
+  return whole != before;
+}
+
+const char* CellSplit::join_taken(UnionFind& joined) const {
+  std::vector<std::uint8_t> way(faces_.pieces.size(), 0);
+  for (const Taken& taken : taken_) way[taken.piece] = taken.reversed ? 2 : 1;
   for (const auto& uses : faces_.uses) {
     int forward = 0, reversed = 0;
     std::optional<std::uint32_t> first;
     for (const PieceUse& use : uses) {
-      if (!kept_[use.piece]) continue;
-      ++(use.reversed ? reversed : forward);
+      if (way[use.piece] == 0) continue;
+      ++(use.reversed == (way[use.piece] == 1) ? reversed : forward);
       if (!first) first = use.piece;
       joined.join(*first, use.piece);
     }
-    if (forward != reversed) return {.fault = "a piece of a cell is not closed"};
-    if (forward > 1) return {.fault = "a piece of a cell touches itself"};
+    if (forward != reversed) return "a piece of a cell is not closed";
+    if (forward > 1) return "a piece of a cell touches itself";
   }
+  return nullptr;
+}
+
+ClippedCell CellSplit::result() {
+  using Left = ClippedCell::Left;
+  if (!is_changed()) return {.left = Left::all};
+  UnionFind joined(faces_.pieces.size());
+  if (const char* fault = join_taken(joined)) return {.fault = fault};
   // A shell for each connected set, with its volume; those of negative volume are voids of the others.
   struct Lump {
     std::vector<TopoDS_Face> faces;
@@ -283,14 +320,14 @@ ClippedCell CellSplit::result() {
   };
   std::vector<Lump> lumps;
   std::map<std::uint32_t, std::size_t> numbers;
-  for (std::uint32_t p = 0; p < faces_.pieces.size(); ++p) {
-    if (!kept_[p]) continue;
+  for (const auto& [p, reversed] : taken_) {
     const auto [it, fresh] = numbers.emplace(joined.root(p), lumps.size());
     if (fresh) lumps.emplace_back();
     Lump& lump = lumps[it->second];
-    lump.faces.push_back(faces_.pieces[p].face);
-    lump.volume +=
-        p < faces_.of_cell && faces_.pieces[p].whole ? cell_.faces[faces_.pieces[p].of].share : share_of(moments(p));
+    const TopoDS_Face& face = faces_.pieces[p].face;
+    lump.faces.push_back(reversed ? TopoDS::Face(face.Reversed()) : face);
+    const double share = is_whole(p) ? cell_.faces[faces_.pieces[p].of].share : share_of(moments(p));
+    lump.volume += reversed ? -share : share;
   }
   if (lumps.empty()) return {};
   const BRep_Builder builder;
@@ -309,7 +346,9 @@ ClippedCell CellSplit::result() {
     builder.MakeSolid(solids.emplace_back());
     builder.Add(solids.back(), shell_of(lump));
   }
-  if (solids.empty() || volume > cell_.volume * (1 + tiny)) return {.fault = "a piece of a cell is inside out"};
+  const double most = cell_.is_frame ? cell_.volume + cell_.left_out : cell_.volume;
+  if (solids.empty() || volume > most * (1 + tiny)) return {.fault = "a piece of a cell is inside out"};
+  if (cell_.is_frame && volume < cell_.left_out - tiny * most) return {.fault = "a body takes something away"};
   for (const Lump& lump : lumps) {
     if (lump.volume > 0) continue;
     std::size_t owner = 0;

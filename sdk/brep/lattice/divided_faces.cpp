@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lattice/divided_faces.hpp"
 
-#include <BOPAlgo_Builder.hxx>
 #include <BOPAlgo_PaveFiller.hxx>
 #include <BOPTools_AlgoTools.hxx>
 #include <algorithm>
@@ -127,26 +126,8 @@ bool FaceDivision::intersect(const RunOptions& run) {
 void FaceDivision::take_pieces(BOPAlgo_Builder& builder, const std::vector<TopoDS_Face>& own,
                                const std::vector<bool>& near, const std::vector<TopoDS_Face>& tools) {
   TopTools_IndexedMapOfShape known;  // pieces of the cell, numbered as in out_.pieces
-  const auto pieces_of = [&](const TopoDS_Face& face) {
-    std::vector<TopoDS_Face> out;
-    TopTools_ListOfShape images;
-    if (!builder.Images().Find(face, images)) images.Append(face);
-    for (const TopoDS_Shape& image : images) {
-      const TopoDS_Shape* same = builder.ShapesSD().Seek(image);
-      TopoDS_Face piece = TopoDS::Face(same != nullptr ? *same : image);
-      if (!piece.IsSame(face)) {
-        Standard_Integer error = 0;
-        if (BOPTools_AlgoTools::IsSplitToReverse(piece, face, out_.context, &error)) piece.Reverse();
-        if (error != 0) throw Standard_Failure("a piece of a face looks both ways");
-      } else {
-        piece = face;
-      }
-      out.push_back(piece);
-    }
-    return out;
-  };
   for (std::uint32_t f = 0; f < own.size(); ++f) {
-    const auto pieces = near[f] ? pieces_of(own[f]) : std::vector{own[f]};
+    const auto pieces = near[f] ? pieces_of(builder, own[f], out_.context) : std::vector{own[f]};
     for (const TopoDS_Face& piece : pieces) {
       known.Add(piece);
       out_.pieces.push_back({.face = piece, .of = f, .whole = pieces.size() == 1});
@@ -154,7 +135,7 @@ void FaceDivision::take_pieces(BOPAlgo_Builder& builder, const std::vector<TopoD
   }
   out_.of_cell = out_.pieces.size();
   for (std::uint32_t t = 0; t < tools.size(); ++t)
-    for (const TopoDS_Face& piece : pieces_of(tools[t])) {
+    for (const TopoDS_Face& piece : pieces_of(builder, tools[t], out_.context)) {
       const int same = known.FindIndex(piece);
       if (same > 0) {
         Piece& other = out_.pieces[static_cast<std::size_t>(same) - 1];
@@ -210,6 +191,26 @@ void FaceDivision::fit() {
 }
 
 }  // namespace
+
+std::vector<TopoDS_Face> pieces_of(BOPAlgo_Builder& builder, const TopoDS_Face& face,
+                                   const Handle(IntTools_Context) & context) {
+  std::vector<TopoDS_Face> out;
+  TopTools_ListOfShape images;
+  if (!builder.Images().Find(face, images)) images.Append(face);
+  for (const TopoDS_Shape& image : images) {
+    const TopoDS_Shape* same = builder.ShapesSD().Seek(image);
+    TopoDS_Face piece = TopoDS::Face(same != nullptr ? *same : image);
+    if (!piece.IsSame(face)) {
+      Standard_Integer error = 0;
+      if (BOPTools_AlgoTools::IsSplitToReverse(piece, face, context, &error)) piece.Reverse();
+      if (error != 0) throw Standard_Failure("a piece of a face looks both ways");
+    } else {
+      piece = face;
+    }
+    out.push_back(piece);
+  }
+  return out;
+}
 
 std::optional<DividedFaces> divide_faces(const WholeCell& cell, const LocalBody& body, const SplitOptions& options,
                                          const RunOptions& run) {

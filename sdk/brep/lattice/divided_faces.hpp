@@ -5,6 +5,7 @@
 // Only faces that come near the body are given to OpenCASCADE, which builds no solid. The edges along which the two cut
 // each other are fitted to both surfaces again (section_curves). Thread rule: one for each thread.
 
+#include <BOPAlgo_Builder.hxx>
 #include <IntTools_Context.hxx>
 #include <functional>
 #include <optional>
@@ -52,6 +53,10 @@ struct DividedFaces {
   bool loose = false;                       ///< an edge lies in a face and does not divide it
   Handle(IntTools_Context) context = new IntTools_Context;
 };
+
+/// What a boolean has made of a face, looking the same way. Of pieces that two faces share, both name the same one.
+[[nodiscard]] std::vector<TopoDS_Face> pieces_of(BOPAlgo_Builder& builder, const TopoDS_Face& face,
+                                                 const Handle(IntTools_Context) & context);
 
 /// Empty if they cannot be divided. May throw Standard_Failure.
 [[nodiscard]] std::optional<DividedFaces> divide_faces(const WholeCell& cell, const LocalBody& body,

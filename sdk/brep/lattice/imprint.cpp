@@ -50,8 +50,9 @@ bool on_some_edge(const TopoDS_Shape& solid, Vec3 p, double tolerance) {
   return false;
 }
 
-/// The solid with its edges divided at `points`, by a boolean of the solid with the points.
-TopoDS_Shape divided(const TopoDS_Shape& solid, const std::vector<Vec3>& points) {
+}  // namespace
+
+TopoDS_Shape divided_at(const TopoDS_Shape& solid, const std::vector<Vec3>& points) {
   BOPAlgo_Builder builder;
   for (TopExp_Explorer it(solid, TopAbs_SOLID); it.More(); it.Next()) builder.AddArgument(it.Current());
   for (const Vec3 p : points) builder.AddArgument(BRepBuilderAPI_MakeVertex(to_pnt(p)).Vertex());
@@ -64,8 +65,6 @@ TopoDS_Shape divided(const TopoDS_Shape& solid, const std::vector<Vec3>& points)
     BRep_Builder().Add(result, it.Current());
   return result;
 }
-
-}  // namespace
 
 bool divide_alike(std::vector<TopoDS_Shape>& solids, const CellShape& cell) {
   const double tolerance = 4 * cell.tolerance();
@@ -82,7 +81,7 @@ bool divide_alike(std::vector<TopoDS_Shape>& solids, const CellShape& cell) {
       for (const Vec3 q : wanted)
         if (!contains(own, q, tolerance) && on_some_edge(solid, q, tolerance)) missing.push_back(q);
       if (missing.empty()) continue;
-      solid = divided(solid, missing);
+      solid = divided_at(solid, missing);
       if (solid.IsNull()) return false;
     }
   }

@@ -14,4 +14,7 @@ namespace meso::brep {
 /// False if a division fails. Throws Standard_Failure.
 [[nodiscard]] bool divide_alike(std::vector<TopoDS_Shape>& solids, const CellShape& cell);
 
+/// The solid with its edges divided at `points`, by a boolean of the solid with the points; null if that fails.
+[[nodiscard]] TopoDS_Shape divided_at(const TopoDS_Shape& solid, const std::vector<Vec3>& points);
+
 }  // namespace meso::brep

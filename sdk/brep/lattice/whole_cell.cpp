@@ -32,21 +32,23 @@ std::vector<TopoDS_Face> faces_in(const TopoDS_Shape& shape) {
   return faces;
 }
 
+void WholeCell::add(const TopoDS_Face& face, Role role) {
+  const FaceMoments m = face_moments(face);
+  Face& value = faces.emplace_back(Face{face, triangles_of(face), {}, share_of(m), m.vector_area, role});
+  for (const Triangle3& triangle : value.triangles)
+    for (const Vec3 p : triangle) value.box.extend(p);
+  if (role == Role::solid_wall) return;
+  volume += value.share;
+  probe.add_group(value.triangles);
+}
+
 WholeCell whole_cell(const TopoDS_Shape& solid, double deflection) {
   WholeCell out;
   out.reach = 3 * deflection;
   const Solids parts = solids_of(BRepBuilderAPI_Copy(solid).Shape());
   for (const TopoDS_Shape& part : parts) {
     BRepMesh_IncrementalMesh(part, deflection, Standard_False, 0.3);
-    for (const TopoDS_Face& face : faces_in(part)) {
-      const FaceMoments m = face_moments(face);
-      WholeCell::Face& value =
-          out.faces.emplace_back(WholeCell::Face{face, triangles_of(face), {}, share_of(m), m.vector_area});
-      for (const Triangle3& triangle : value.triangles)
-        for (const Vec3 p : triangle) value.box.extend(p);
-      out.volume += value.share;
-      out.probe.add_group(value.triangles);
-    }
+    for (const TopoDS_Face& face : faces_in(part)) out.add(face, WholeCell::Role::skin);
     out.solids.emplace_back(part);
   }
   return out;
