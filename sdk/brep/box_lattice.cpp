@@ -21,15 +21,19 @@ int axis_of(Vec3 step, Vec3 size) {
 }
 
 /// The boxes of the pattern's own cells.
-std::optional<BoxLattice> own_boxes(const eval::CellStream& cells, DiagnosticSink& sink) {
-  const auto steps = cells.lattice();
-  if (!steps || cells.shape_varies() || !is_rigid(steps->world_from_first)) return {};
+std::optional<BoxLattice> own_boxes(const eval::CellStream& cells, bool may_vary, DiagnosticSink& sink) {
+  auto steps = cells.shape_varies() ? std::nullopt : cells.lattice();
+  const bool varies = !steps;
+  if (varies && may_vary && std::holds_alternative<BeamsBody>(cells.unit_cell().body))
+    steps = cells.lattice_of_places();
+  if (!steps || !is_rigid(steps->world_from_first)) return {};
   auto first = first_cell(cells, sink);
   if (!first) return {};
   BoxLattice out{.box = first->box,
                  .world_from_cell = steps->world_from_first,
                  .shape = std::move(first->shape),
-                 .cut = cells.unit_cell().clip_to_box.value_or(false)};
+                 .cut = cells.unit_cell().clip_to_box.value_or(false),
+                 .varies = varies};
   const Mat3 columns = transposed(steps->world_from_first.linear) * steps->lattice;
   std::array<bool, 3> used{};
   for (std::size_t loop = 0; loop < 3; ++loop) {
@@ -54,7 +58,7 @@ std::optional<BoxLattice> smaller_boxes(const BoxLattice& outer, const SolidCont
   const auto* of_part = std::get_if<eval::PartShape>(&outer.shape.value);
   const eval::CellStream* cells =
       of_part != nullptr && context.parts != nullptr ? context.parts->only_cells_of(*of_part->part) : nullptr;
-  auto inner = cells != nullptr ? own_boxes(*cells, context.sink) : std::nullopt;
+  auto inner = cells != nullptr ? own_boxes(*cells, false, context.sink) : std::nullopt;
   if (!inner || !is_unturned(inner->world_from_cell)) return {};
   inner->is_cut_by_cells = outer.is_cut_by_cells || (outer.cut && !inner->cut);
   inner->cut = inner->cut || outer.cut;
@@ -78,8 +82,9 @@ std::optional<BoxLattice> smaller_boxes(const BoxLattice& outer, const SolidCont
 
 }  // namespace
 
-std::optional<BoxLattice> box_lattice(const eval::CellStream& cells, bool may_refine, const SolidContext& context) {
-  auto out = own_boxes(cells, context.sink);
+std::optional<BoxLattice> box_lattice(const eval::CellStream& cells, bool may_refine, bool may_vary,
+                                      const SolidContext& context) {
+  auto out = own_boxes(cells, may_vary, context.sink);
   while (out && may_refine) {
     auto smaller = smaller_boxes(*out, context);
     if (!smaller) break;

@@ -21,13 +21,14 @@ struct BoxLattice {
   eval::Shape shape;             ///< of what belongs to one box, in its own coordinates
   bool cut = false;              ///< to the box
   bool is_cut_by_cells = false;  ///< and that only where a cell of the pattern ends
+  bool varies = false;           ///< struts differ from cell to cell; `shape` is the first's
 
   [[nodiscard]] bool is_refined() const { return block != Index3{1, 1, 1}; }
 };
 
-/// `may_refine`: boxes may be smaller than those of the pattern's cells. Nothing where cells do not stand so. Errors of
-/// evaluation are reported.
-[[nodiscard]] std::optional<BoxLattice> box_lattice(const eval::CellStream& cells, bool may_refine,
+/// `may_refine`: boxes may be smaller than those of the pattern's cells; `may_vary`: see BoxLattice. Nothing where
+/// cells do not stand so. Errors of evaluation are reported.
+[[nodiscard]] std::optional<BoxLattice> box_lattice(const eval::CellStream& cells, bool may_refine, bool may_vary,
                                                     const SolidContext& context);
 
 /// Box and shape of the first cell that is kept, where it has a box.

@@ -7,6 +7,7 @@
 #include "boolean.hpp"
 #include "box_lattice.hpp"
 #include "lattice/cells_of_boxes.hpp"
+#include "lattice/varied_cells.hpp"
 #include "solid_primitive.hpp"
 #include "solid_shape.hpp"
 
@@ -188,6 +189,38 @@ std::optional<Solids> all_but(const Solids& removed, const BoxLattice& lattice, 
   return brep::cut({BRepPrimAPI_MakeBox(to_pnt(first), to_pnt(last)).Solid()}, removed, {}, context);
 }
 
+/// The cells of a lattice whose struts differ. Nothing where they are not struts, or their boxes differ.
+std::optional<CellShape> varied_cell(const eval::CellStream& cells, const BoxLattice& lattice,
+                                     const SolidContext& context) {
+  const Vec3 size = lattice.box.size;
+  const Index3 last{lattice.count[0] - 1, lattice.count[1] - 1, lattice.count[2] - 1};
+  PrimitiveTable table(std::max({size.x, size.y, size.z}));
+  auto varied = std::make_shared<VariedCells>(last);
+  std::uint64_t found = 0;
+  const auto take = [&](const eval::PlacedCell& cell) {
+    const auto box = cells.cell_box(cell, context.sink);
+    if (!box || norm(box->corner - lattice.box.corner) + norm(box->size - size) > 1e-9 * norm(size)) return false;
+    const auto shape = cells.shape(cell, context.sink);
+    const auto* beams = shape ? std::get_if<eval::BeamsShape>(&shape->value) : nullptr;
+    const auto primitives = beams != nullptr ? primitives_of(*beams) : std::nullopt;
+    if (!primitives) return false;
+    std::vector<std::uint32_t> numbers;
+    for (const CellPrimitive& primitive : *primitives) numbers.push_back(table.number_of(primitive));
+    const Vec3 at = inverse(lattice.world_from_cell) * cell.world_from_cell.translation;
+    Index3 index{};
+    for (std::size_t a = 0; a < 3; ++a)
+      index[a] = std::clamp(static_cast<std::int32_t>(std::lround(at[a] / size[a])), 0, last[a]);
+    varied->set(index, std::move(numbers));
+    ++found;
+    return true;
+  };
+  if (!cells.visit(0, cells.size(), take, context.sink) || found != cells.size()) return {};
+  auto shape =
+      cell_shape({.box = {lattice.box.corner, lattice.box.corner + size}, .primitives = table.all()}, context.sink);
+  if (shape) shape->varied = std::move(varied);
+  return shape;
+}
+
 /// A lattice of boxes side by side, and the bodies in the frame of its first cell.
 struct Found {
   BoxLattice lattice;
@@ -199,7 +232,10 @@ struct Found {
 
 std::optional<Found> find_lattice(const LatticeRequest& request, const eval::CellStream& cells, bool may_refine,
                                   const SolidContext& context) {
-  const auto lattice = box_lattice(cells, may_refine, context);
+  const bool may_vary =
+      !request.whole_cells && (cells.unit_cell().clip_to_box.value_or(false) || !request.clip.empty() ||
+                               !request.removed.empty() || !request.added.empty());
+  const auto lattice = box_lattice(cells, may_refine, may_vary, context);
   if (!lattice) return {};
   const auto from_world = [&](Solids solids) {
     for (TopoDS_Shape& solid : solids) solid = mapped(solid, inverse(lattice->world_from_cell));
@@ -213,14 +249,15 @@ std::optional<Found> find_lattice(const LatticeRequest& request, const eval::Cel
   } else if (request.clip.empty() && lattice->cut) {
     in_cell_frame.push_back(all_boxes(*lattice));
   }
-  auto cell = repeated_cell(lattice->shape, lattice->box, context);
+  auto cell =
+      lattice->varies ? varied_cell(cells, *lattice, context) : repeated_cell(lattice->shape, lattice->box, context);
   if (!cell) return {};
   // What sticks out of a box within a cell stays: cutting it is the same only if the next box has it, too.
   if (lattice->is_cut_by_cells && !reach_of(*cell).neighbours.empty())
     return find_lattice(request, cells, false, context);
   cell->cut_to_box = lattice->cut;
   std::shared_ptr<const Blocks> blocks;
-  if (const auto planes = face_planes(in_cell_frame, *lattice); planes && !in_cell_frame.empty())
+  if (const auto planes = face_planes(in_cell_frame, *lattice); planes && !in_cell_frame.empty() && !lattice->varies)
     blocks = std::make_shared<const Blocks>(in_cell_frame, *lattice, *planes);
   return Found{*lattice, std::move(*cell), std::move(in_cell_frame), from_world(request.added), std::move(blocks)};
 }

@@ -16,20 +16,27 @@ bool is_regular(const LoopProgram& loop) {
                                          [](const BoundExpression& e) { return e.level == constant_level; }));
 }
 
-bool is_regular(const PatternProgram& program) {
-  return program.mapping == CellMapping::rigid && !program.drops_cells && program.node_statements.empty() &&
-         program.turn_level == constant_level && program.loops.size() <= 3 &&
-         std::all_of(program.loops.begin(), program.loops.end(),
-                     [](const LoopProgram& loop) { return is_regular(loop); }) &&
-         std::all_of(program.statements.begin(), program.statements.end(),
-                     [](const Statement& s) { return s.level == constant_level; });
+bool stands_regularly(const PatternProgram& program) {
+  return program.mapping == CellMapping::rigid && !program.drops_cells && program.turn_level == constant_level &&
+         program.loops.size() <= 3 &&
+         std::ranges::all_of(program.loops, [](const LoopProgram& loop) { return is_regular(loop); }) &&
+         std::ranges::all_of(program.statements,
+                             [](const Statement& s) { return !s.moves() || s.level == constant_level; });
+}
+
+bool has_equal_cells(const PatternProgram& program) {
+  return program.node_statements.empty() &&
+         std::ranges::all_of(program.statements, [](const Statement& s) { return s.level == constant_level; });
 }
 
 }  // namespace
 
 std::optional<CellStream::Lattice> CellStream::lattice() const {
-  const PatternProgram& program = *impl_->program;
-  if (size() == 0 || !is_regular(program)) return std::nullopt;
+  return has_equal_cells(*impl_->program) ? lattice_of_places() : std::nullopt;
+}
+
+std::optional<CellStream::Lattice> CellStream::lattice_of_places() const {
+  if (size() == 0 || !stands_regularly(*impl_->program)) return std::nullopt;
   Lattice result;
   const std::vector<std::int64_t> counts = extents();
   std::copy(counts.begin(), counts.end(), result.count.begin());

@@ -17,6 +17,8 @@ class CellKinds {
  public:
   /// Nothing of the lattice is in boxes that are not asked for by `holds`.
   CellKinds(const Reach& reach, const KeptCells& cells, const std::function<bool(Index3)>& holds = {});
+  /// Where `parts_of` tells what each box holds.
+  CellKinds(const KeptCells& cells, const std::function<std::vector<std::uint32_t>(Index3)>& parts_of);
   /// The parts of each of these kinds; kind 0 has all, some may have none.
   [[nodiscard]] const std::vector<std::vector<std::uint32_t>>& parts() const { return parts_; }
   [[nodiscard]] std::uint32_t of(const Index3& cell, const KeptCells& cells) const {

@@ -35,6 +35,16 @@ CellKinds::CellKinds(const Reach& reach, const KeptCells& cells, const std::func
   }
 }
 
+CellKinds::CellKinds(const KeptCells& cells, const std::function<std::vector<std::uint32_t>(Index3)>& parts_of)
+    : kinds_(cells.count(), 0) {
+  std::map<std::vector<std::uint32_t>, std::uint32_t> known;
+  for (std::uint32_t n = 0; n < cells.count(); ++n) {
+    auto [it, fresh] = known.try_emplace(parts_of(cells.cell(n)), static_cast<std::uint32_t>(parts_.size()));
+    if (fresh) parts_.push_back(it->first);
+    kinds_[n] = it->second;
+  }
+}
+
 bool fit_in_memory(std::uint64_t boxes, const RunOptions& run, DiagnosticSink& sink) {
   constexpr std::uint64_t bytes_per_box = 100;
   if (boxes <= run.max_memory_bytes / bytes_per_box) return true;

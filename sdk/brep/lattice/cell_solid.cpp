@@ -258,6 +258,7 @@ std::optional<CellShape> cell_shape(const LatticeCell& cell, DiagnosticSink& sin
 }
 
 std::optional<CellShape> with_poles_aside(const CellShape& cell) {
+  if (cell.varied) return {};
   CellShape out = cell;
   bool has_changed = false;
   try {

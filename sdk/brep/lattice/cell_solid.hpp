@@ -4,6 +4,7 @@
 // to the box. Private.
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -14,12 +15,15 @@
 
 namespace meso::brep {
 
+class VariedCells;
+
 /// A unit cell as OpenCASCADE solids. `primitives` is parallel to `solids`, or empty where the solids are not beams.
 struct CellShape {
   Box3 box;
   std::vector<TopoDS_Shape> solids;
   std::vector<CellPrimitive> primitives;
-  bool cut_to_box = false;  ///< what sticks out is not there: nothing reaches into a neighbour
+  bool cut_to_box = false;                      ///< what sticks out is not there: nothing reaches into a neighbour
+  std::shared_ptr<const VariedCells> varied{};  ///< which primitives each cell has; null: all have all
 
   [[nodiscard]] Vec3 size() const { return box.max - box.min; }
   /// Two points closer than this are one.
@@ -29,7 +33,7 @@ struct CellShape {
 [[nodiscard]] std::optional<CellShape> cell_shape(const LatticeCell& cell, DiagnosticSink& sink);
 
 /// The same set of points with the poles of balls hidden or left out, if that can be done for any. What a body cuts
-/// into balls is found more surely; pieces of one ball are not joined, and files are larger.
+/// into balls is found more surely; pieces of one ball are not joined, and files are larger. Not of cells that vary.
 [[nodiscard]] std::optional<CellShape> with_poles_aside(const CellShape& cell);
 
 /// Which solids of which cells shape the inside of one box.

@@ -12,6 +12,7 @@
 #include "lattice/parallel.hpp"
 #include "lattice/quotient_builder.hpp"
 #include "lattice/united_cells.hpp"
+#include "lattice/varied_cells.hpp"
 #include "meso/base/number.hpp"
 
 namespace meso::brep {
@@ -138,6 +139,8 @@ ClipCounts counts_of(const std::vector<ClippedCell>& results, Vec3 size, Diagnos
   return counts;
 }
 
+constexpr std::size_t most_kinds = 10'000;  ///< each takes some tenths of a second
+
 /// Of fewer cells a boolean is sooner done than this many boxes of a body that reaches far beyond them.
 bool is_worth_it(std::size_t distinct, std::uint64_t kept) { return kept > 100 || distinct <= 100 + 8 * kept; }
 
@@ -145,12 +148,17 @@ class LatticeMaker {
  public:
   LatticeMaker(const CellShape& cell, const Index3& last, const std::vector<TopoDS_Shape>& body,
                const ClipOptions& options, const RunOptions& run, DiagnosticSink& sink)
-      : cell_(cell), last_(last), body_(body), options_(options), run_(run), sink_(sink), reach_(reach_of(cell)) {}
+      : cell_(cell), last_(last), body_(body), options_(options), run_(run), sink_(sink) {
+    if (cell.varied)
+      varied_.emplace(cell);
+    else
+      reach_ = reach_of(cell);
+  }
 
   std::optional<ClippedLattice> make() {
-    if (std::max(reach_.neighbours.size(), reach_.rim.size()) > 64)
+    if (std::max(reach().neighbours.size(), reach().rim.size()) > 64)
       return fault("the unit cell reaches too far beyond its box");
-    of_lattice_ = grid_for(cell_, reach_, last_, body_);
+    of_lattice_ = grid_for(cell_, reach(), last_, body_);
     grid_ = grown_for(of_lattice_, options_.added);
     if (grid_.count() == 0) return ClippedLattice{};
     if (grid_.count() > run_.max_cells) return fault("the body meets too many boxes");
@@ -161,8 +169,10 @@ class LatticeMaker {
       return in_body(index) || (added_ && added_->place(index) != BoxPlace::outside);
     });
     if (run_.should_stop()) return stopped();
-    CellKinds kinds(reach_, cells, [&](const Index3& index) { return in_body(index); });
-    auto solids = kind_solids(cell_, reach_, kinds.parts(), run_, sink_);
+    CellKinds kinds = first_kinds(cells);
+    if (kinds.parts().size() > most_kinds)
+      return fault("more boxes than " + std::to_string(most_kinds) + " are alike with none other");
+    auto solids = kind_solids(cell_, reach(), kinds.parts(), run_, sink_);
     if (run_.should_stop()) return stopped();
     if (!solids) return {};
     solids_ = std::move(*solids);
@@ -183,6 +193,14 @@ class LatticeMaker {
   [[nodiscard]] bool in_body(const Index3& index) const {
     return of_lattice_.has(index) && (!surface_ || surface_->place(index) != BoxPlace::outside);
   }
+  [[nodiscard]] const Reach& reach() const { return varied_ ? varied_->reach() : reach_; }
+  [[nodiscard]] CellKinds first_kinds(const KeptCells& cells) {
+    if (!varied_) return {reach_, cells, [&](const Index3& index) { return in_body(index); }};
+    return {cells, [&](const Index3& box) {
+              if (!in_body(box)) return std::vector<std::uint32_t>{};
+              return varied_->parts_of(box, [&](const Index3& cell) { return cells.in_pattern(cell); });
+            }};
+  }
   std::nullopt_t fault(std::string what) {
     sink_.report({.code = Code::geometry_not_repeatable, .args = {std::move(what)}});
     return std::nullopt;
@@ -202,6 +220,7 @@ class LatticeMaker {
   const RunOptions& run_;
   DiagnosticSink& sink_;
   Reach reach_;
+  std::optional<VariedBoxes> varied_;
   CellGrid of_lattice_, grid_;  ///< the boxes of the cells; and those of the body that is added
   std::optional<BodySurface> surface_, added_;
   std::vector<TopoDS_Shape> solids_;  ///< by kind
@@ -252,8 +271,9 @@ std::string LatticeMaker::add(const KeptCells& cells, CellKinds& kinds) {
     if (!is_worth_it(plan.distinct(), out_.kept)) return "the body that is added meets too many boxes";
     if (std::string fault = plan.run(kinds, solids_, results_, run_); !fault.empty()) return fault;
     if (run_.should_stop()) return {};
-    if (!align_edges(grid_, cells, kinds, solids_)) return "the walls of boxes cannot be divided alike";
   }
+  if ((added_ || varied_) && !align_edges(grid_, cells, kinds, solids_))
+    return "the walls of boxes cannot be divided alike";
   if (options_.pieces == PiecesAsked::of_both || options_.pieces == PiecesAsked::of_both_and_no_body)
     out_.joined = std::make_shared<const LatticePieces>(grid_, cells, kinds, solids_);
   return {};

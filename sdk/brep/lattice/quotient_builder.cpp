@@ -300,6 +300,7 @@ std::optional<std::vector<TopoDS_Shape>> kind_solids(const CellShape& cell, cons
     if (told != sinks.end()) sink.report(told->diagnostics().front());
     return {};
   }
+  if (cell.varied) return solids;  // alike or not is a question of neighbours: align_edges()
   try {
     if (divide_alike(solids, cell)) return solids;
   } catch (const Standard_Failure&) {

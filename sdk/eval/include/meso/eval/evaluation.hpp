@@ -97,6 +97,8 @@ class CellStream {
     std::array<std::int64_t, 3> count{1, 1, 1};
   };
   [[nodiscard]] std::optional<Lattice> lattice() const;
+  /// As lattice(), but the cells' parameters may differ.
+  [[nodiscard]] std::optional<Lattice> lattice_of_places() const;
 
   /// The cell's box in cell coordinates (mm); empty if the unit cell has none.
   [[nodiscard]] std::optional<BoxShape> cell_box(const PlacedCell& cell, DiagnosticSink& sink) const;
