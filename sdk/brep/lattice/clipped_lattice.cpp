@@ -139,7 +139,7 @@ ClipCounts counts_of(const std::vector<ClippedCell>& results, Vec3 size, Diagnos
   return counts;
 }
 
-constexpr std::size_t most_kinds = 10'000;  ///< each takes some tenths of a second
+constexpr std::size_t most_kinds = 1'000;  ///< each takes half a second to a second
 
 /// Of fewer cells a boolean is sooner done than this many boxes of a body that reaches far beyond them.
 bool is_worth_it(std::size_t distinct, std::uint64_t kept) { return kept > 100 || distinct <= 100 + 8 * kept; }
