@@ -74,7 +74,7 @@ bool PartFold::graph_comes_first(const eval::CellStream& cells) {
   if (has_touching_circles(*inner)) return true;
   if (part_in_cells(cells.pattern()) == nullptr) return false;
   // Large cells of many beams: their booleans take long, unless smaller boxes stand side by side in them.
-  const auto lattice = box_lattice(cells, true, context_);
+  const auto lattice = box_lattice(cells, true, false, context_);
   return !lattice || !lattice->is_refined();
 }
 
