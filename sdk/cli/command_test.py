@@ -57,6 +57,15 @@ class Flags(CommandTest):
         self.expect(0, "--version")
         self.expect(0, "--help")
 
+    def test_misspelt_words(self):
+        good = self.file("good.meso", document())
+        self.expect(2, "konvert", good, says="there is no verb 'konvert'")
+        self.expect(2, "validte", good, says="did you mean 'validate'?")
+        self.expect(2, "info", "--jsn", good, says="there is no flag '--jsn'; did you mean '--json'?")
+        self.expect(2, "info", "--jsn=1", good, says="did you mean '--json'?")
+        if "convert" in VERBS:
+            self.expect(2, "convert", self.file("a.step", ""), self.out(), says='<import href="a.step"/>')
+
     def test_flags_without_effect(self):
         good = self.file("good.meso", document())
         self.expect(2, "canonical", good, "--no-clobber", says="USAGE")

@@ -10,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include "meso/expr/nearest.hpp"
 #include "run.hpp"
 #include "stop.hpp"
 #include "wall.hpp"
@@ -40,6 +41,33 @@ void add_verbs(CLI::App& app, meso::cli::Run& run) {
   add_sdf(app);
 #endif
   add_formats(app, run);
+}
+
+std::string no_such(const char* what, std::string_view word, const std::vector<std::string>& known) {
+  const std::vector<std::string_view> names(known.begin(), known.end());
+  const std::string_view meant = meso::expr::nearest(word, names);
+  return fmt::format("there is no {} '{}'{}", what, word,
+                     meant.empty() ? "" : fmt::format("; did you mean '{}'?", meant));
+}
+
+/// The verb or flag that is none, with what was meant; empty where every word is known, or is no verb's flag.
+std::string misspelt(const CLI::App& app, const std::vector<std::string_view>& words) {
+  if (words.size() < 2) return {};
+  std::vector<std::string> verbs, flags;
+  for (const CLI::App* verb : app.get_subcommands([](const CLI::App*) { return true; })) {
+    verbs.push_back(verb->get_name());
+    if (verb->get_name() != words[1]) continue;
+    for (const CLI::Option* option : verb->get_options())
+      for (const std::string& name : option->get_lnames()) flags.push_back("--" + name);
+  }
+  if (!words[1].starts_with('-') && std::ranges::find(verbs, words[1]) == verbs.end())
+    return no_such("verb", words[1], verbs);
+  for (const std::string_view word : words) {
+    const std::string_view flag = word.substr(0, word.find('='));
+    if (flag.starts_with("--") && !flags.empty() && std::ranges::find(flags, flag) == flags.end())
+      return no_such("flag", flag, flags);
+  }
+  return {};
 }
 
 /// The one verb whose words are not flags and files.
@@ -83,8 +111,10 @@ int main(int argc, char** argv) {
     try {
       app.parse(argc, argv);
     } catch (const CLI::ParseError& e) {
-      const int code = app.exit(e);
-      return code == 0 ? 0 : 2;
+      const std::string told = e.get_exit_code() == 0 ? "" : misspelt(app, words);
+      if (told.empty()) return app.exit(e) == 0 ? 0 : 2;
+      fmt::print(stderr, "{}\nRun with --help for more information.\n", told);
+      return 2;
     }
   }
   const int code = run_verb(run);

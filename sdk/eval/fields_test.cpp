@@ -206,11 +206,11 @@ TEST(Derived, DirectionsOrientCells) {
 
 /// What check_reach says about pattern "p" against a body of this box.
 std::string reach_of(const std::string& instructions, const Box3& body, const std::string& operation = "difference",
-                     const MayReach& may_reach = {}) {
+                     const MayReach& may_reach = {}, const std::string& places = "<scatter field='f'/>") {
   const Evaluation evaluation = evaluation_of(
       "<macrostructures><macrostructure id='m'><csg><box dx='1' dy='1' "
       "dz='1'/></csg></macrostructure></macrostructures>" +
-      pattern_text("<scatter field='f'/>" + instructions, cell, "", four) +
+      pattern_text(places + instructions, cell, "", four) +
       "<parts><part id='q' macrostructure='m'><apply pattern='p' operation='" + operation + "'/></part></parts>");
   const Part& part = evaluation.document().parts.items.at(0);
   DiagnosticSink sink;
@@ -242,6 +242,18 @@ TEST(Scatter, CellsReachTheBodyTheyCut) {
   EXPECT_EQ(reach_of("<when test='f.s &gt; 5'/>", near), "");
   EXPECT_EQ(reach_of("<when test='f.s &gt; 100'/>", near), "PATTERN_KEEPS_NONE");
   EXPECT_EQ(reach_of("<when test='f.s &gt; 100'/>", far), "PATTERN_KEEPS_NONE");
+}
+
+// A part may be meant to stay whole; nobody means it who writes a loop.
+TEST(Loops, CellsThatAllMissTheBodyAreTold) {
+  const std::string loop = "<loop index='i' axis='x' count='4' spacing='1'/>";
+  const Box3 near{{3.5, -1, -1}, {9, 1, 1}}, far{{4.5, -1, -1}, {9, 1, 1}};
+  EXPECT_EQ(reach_of("", near, "difference", {}, loop), "");
+  EXPECT_EQ(reach_of("", far, "difference", {}, loop), "PATTERN_MISSES_PART");
+  EXPECT_EQ(reach_of("", far, "intersection", {}, loop), "PATTERN_MISSES_PART");
+  EXPECT_EQ(reach_of("", far, "union", {}, loop), "");
+  EXPECT_EQ(reach_of("", Box3{}, "difference", {}, loop), "");
+  EXPECT_EQ(reach_of("<when test='i &gt; 9'/>", far, "difference", {}, loop), "PATTERN_KEEPS_NONE");
 }
 
 TEST(FieldFaults, OneDiagnosticEach) {

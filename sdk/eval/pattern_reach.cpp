@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "meso/base/number.hpp"
 #include "scope.hpp"
 
 namespace meso::eval {
@@ -25,6 +26,23 @@ Found any(const Visit& visit, const MayReach& wanted, DiagnosticSink& sink) {
 
 Found any_kept(const CellStream& cells, DiagnosticSink& sink) {
   return any([&](const auto& visitor) { return cells.visit(0, cells.size(), visitor, sink); }, {}, sink);
+}
+
+std::string text_of(Vec3 p) { return format_number(p.x) + ", " + format_number(p.y) + ", " + format_number(p.z); }
+
+void warn_of_miss(const Evaluation& evaluation, const CellStream& cells, const Part& part, const Box3& body_mm,
+                  DiagnosticSink& sink) {
+  std::string first;
+  (void)cells.visit(
+      0, cells.size(),
+      [&](const PlacedCell& cell) {
+        first = text_of(cell.world_from_cell.translation);
+        return false;
+      },
+      sink);
+  Report{evaluation.checked().source(), sink}(
+      Code::pattern_misses_part, {cells.pattern().id_in_source, {}},
+      {cells.pattern().id.text, part.id.text, text_of(body_mm.min), text_of(body_mm.max), first});
 }
 
 bool has_when(const Pattern& pattern) {
@@ -56,16 +74,17 @@ void report_no_reach(const Evaluation& evaluation, const CellStream& cells, cons
 
 bool check_reach(const Evaluation& evaluation, const CellStream& cells, const Apply& apply, const Part& part,
                  const Box3& body_mm, const MayReach& may_reach, DiagnosticSink& sink) {
-  if (must_reach(cells, apply) && !body_mm.empty()) {
-    const Found touching =
-        any([&](const auto& visitor) { return cells.visit_touching(body_mm, visitor, sink); }, may_reach, sink);
-    if (touching != Found::none) return touching == Found::some;
-    if (const Found kept = any_kept(cells, sink); kept != Found::none) {
-      if (kept == Found::some) report_no_reach(evaluation, cells, part, sink);
-      return false;
-    }
-  }
-  return check_keeps_any(evaluation, cells, sink);
+  if (apply.operation == ApplyOperation::union_ || body_mm.empty() || cells.size() == 0)
+    return check_keeps_any(evaluation, cells, sink);
+  const Found touching =
+      any([&](const auto& visitor) { return cells.visit_touching(body_mm, visitor, sink); }, may_reach, sink);
+  if (touching != Found::none) return touching == Found::some;
+  const Found kept = any_kept(cells, sink);
+  if (kept == Found::none) return check_keeps_any(evaluation, cells, sink);
+  if (kept == Found::failed) return false;
+  if (must_reach(cells, apply)) return report_no_reach(evaluation, cells, part, sink), false;
+  warn_of_miss(evaluation, cells, part, body_mm, sink);
+  return true;
 }
 
 }  // namespace meso::eval
