@@ -201,7 +201,7 @@ class ExitCodes(CommandTest):
     @needs("convert")
     @unittest.skipUnless("sdf" in VERBS, "this build has no implicit engine")
     def test_why_the_exact_engine_does_not_make_it(self):
-        axes = "".join(f'<loop index="{i}" axis="{axis}" count="9" spacing="1"/>' for i, axis in zip("uvw", "xyz"))
+        axes = "".join(f'<loop index="{i}" axis="{axis}" count="9" spacing="0.9"/>' for i, axis in zip("uvw", "xyz"))
         file = self.file("many.meso", f"""<meso xmlns="urn:meso-format:1.0" version="1.0" unit="millimeter">
           <macrostructures><macrostructure id="m"><csg><box dx="6" dy="6" dz="6"/></csg></macrostructure></macrostructures>
           <unitCells><unitCell id="u"><box dx="1" dy="1" dz="1"/><csg><sphere radius="0.7"/></csg></unitCell></unitCells>

@@ -83,7 +83,8 @@ bool check_reach(const Evaluation& evaluation, const CellStream& cells, const Ap
   if (kept == Found::none) return check_keeps_any(evaluation, cells, sink);
   if (kept == Found::failed) return false;
   if (must_reach(cells, apply)) return report_no_reach(evaluation, cells, part, sink), false;
-  warn_of_miss(evaluation, cells, part, body_mm, sink);
+  // What an intersection leaves is empty, and told as that.
+  if (apply.operation == ApplyOperation::difference) warn_of_miss(evaluation, cells, part, body_mm, sink);
   return true;
 }
 
