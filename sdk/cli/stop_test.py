@@ -68,9 +68,9 @@ WORK = {
     "100 000 cells to STL": "convert {d}/many.meso {o}/a.stl",
     "100 000 cells to .brep": "convert {d}/many.meso {o}/a.brep",
     "one large boolean": "convert {d}/fuse.meso {o}/a.step",
-    "field of 800^3": "convert {d}/gyroid.meso {o}/a.ply --samples 800^3",
-    "words, 800^3": "sdf tpms.gyroid -s 800,800,800 --polish -o {o}/a.ply",
-    "tetrahedra": "sdf tpms.gyroid -s 400,400,400 -o {o}/a.vtu",
+    "field of 1600^3": "convert {d}/gyroid.meso {o}/a.ply --samples 1600^3",
+    "words, 1600^3": "sdf tpms.gyroid -s 1600,1600,1600 --polish -o {o}/a.ply",
+    "tetrahedra": "sdf tpms.gyroid -s 560,560,560 -o {o}/a.vtu",
     "a large STEP read": "verify --deep {d}/large.step",
     "a large STEP imported": "convert {d}/import.meso {o}/a.stl",
     "a deep check": "verify --deep {d}/many.meso",
@@ -79,7 +79,7 @@ WORK = {
     "a picture": "render {d}/many.meso {o}/a.png",
     "an estimate": "info --estimate {d}/torus.meso",
 }
-QUICK = ("lattice in a torus", "100 000 cells to STEP", "one large boolean", "field of 800^3", "a large STEP read", "a deep check")
+QUICK = ("lattice in a torus", "100 000 cells to STEP", "one large boolean", "field of 1600^3", "a large STEP read", "a deep check")
 
 
 class Stopping(unittest.TestCase):
@@ -156,7 +156,7 @@ class Stopping(unittest.TestCase):
         self.assertLess(took, SECONDS_TO_STOP + SECONDS_OF_GRACE)
 
     def test_a_signal_while_the_file_is_written(self):
-        for words in ("convert {d}/many.meso {o}/a.step", "convert {d}/many.meso {o}/a.stl", "sdf tpms.gyroid -s 800,800,800 -o {o}/a.ply"):
+        for words in ("convert {d}/many.meso {o}/a.step", "convert {d}/many.meso {o}/a.stl", "sdf tpms.gyroid -s 1600,1600,1600 -o {o}/a.ply"):
             if words.split()[0] not in VERBS:
                 continue
             with self.subTest(words=words):
