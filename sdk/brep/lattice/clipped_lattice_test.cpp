@@ -10,6 +10,7 @@
 #include <random>
 
 #include "lattice/primitive_field.hpp"
+#include "lattice/test_cells.hpp"
 #include "meso/brep/audit.hpp"
 #include "meso/brep/measure.hpp"
 #include "meso/brep/triangles.hpp"
@@ -18,17 +19,6 @@ namespace meso::brep {
 namespace {
 
 constexpr double pi = std::numbers::pi;
-constexpr double bcc_cell = 22.928246067499;  // a = 5, r = 0.5, R = 0.9, by inclusion and exclusion
-
-LatticeCell bcc() {
-  LatticeCell cell{.box = {{0, 0, 0}, {5, 5, 5}}, .primitives = {Ball{{2.5, 2.5, 2.5}, 0.9}}};
-  for (int i = 0; i < 8; ++i) {
-    const Vec3 corner{i & 1 ? 5.0 : 0, i & 2 ? 5.0 : 0, i & 4 ? 5.0 : 0};
-    cell.primitives.push_back(Ball{corner, 0.9});
-    cell.primitives.push_back(Frustum{corner, {2.5, 2.5, 2.5}, 0.5, 0.5});
-  }
-  return cell;
-}
 
 TopoDS_Shape box(Vec3 from, Vec3 to) { return BRepPrimAPI_MakeBox(to_pnt(from), to_pnt(to)).Solid(); }
 

@@ -18,6 +18,7 @@
 #include "lattice/cell_clipper.hpp"
 #include "lattice/clipped_lattice.hpp"
 #include "lattice/primitive_field.hpp"
+#include "lattice/test_cells.hpp"
 #include "meso/brep/audit.hpp"
 #include "meso/brep/measure.hpp"
 
@@ -26,16 +27,6 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 const Vec3 centre{8.1, 7.7, 8.2};
-
-LatticeCell bcc() {
-  LatticeCell cell{.box = {{0, 0, 0}, {5, 5, 5}}, .primitives = {Ball{{2.5, 2.5, 2.5}, 0.9}}};
-  for (int i = 0; i < 8; ++i) {
-    const Vec3 corner{i & 1 ? 5.0 : 0, i & 2 ? 5.0 : 0, i & 4 ? 5.0 : 0};
-    cell.primitives.push_back(Ball{corner, 0.9});
-    cell.primitives.push_back(Frustum{corner, {2.5, 2.5, 2.5}, 0.5, 0.5});
-  }
-  return cell;
-}
 
 LatticeCell octet() {
   std::vector<Vec3> nodes;

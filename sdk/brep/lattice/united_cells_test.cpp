@@ -11,6 +11,7 @@
 
 #include "lattice/clipped_lattice.hpp"
 #include "lattice/primitive_field.hpp"
+#include "lattice/test_cells.hpp"
 #include "meso/brep/audit.hpp"
 #include "meso/brep/measure.hpp"
 #include "meso/brep/triangles.hpp"
@@ -19,18 +20,7 @@ namespace meso::brep {
 namespace {
 
 constexpr double pi = std::numbers::pi;
-constexpr double bcc_cell = 22.928246067499;  // a = 5, r = 0.5, R = 0.9, by inclusion and exclusion
 constexpr double node = 4.0 / 3 * pi * 0.9 * 0.9 * 0.9;
-
-LatticeCell bcc() {
-  LatticeCell cell{.box = {{0, 0, 0}, {5, 5, 5}}, .primitives = {Ball{{2.5, 2.5, 2.5}, 0.9}}};
-  for (int i = 0; i < 8; ++i) {
-    const Vec3 corner{i & 1 ? 5.0 : 0, i & 2 ? 5.0 : 0, i & 4 ? 5.0 : 0};
-    cell.primitives.push_back(Ball{corner, 0.9});
-    cell.primitives.push_back(Frustum{corner, {2.5, 2.5, 2.5}, 0.5, 0.5});
-  }
-  return cell;
-}
 
 using Bodies = std::vector<TopoDS_Shape>;
 
@@ -43,6 +33,7 @@ std::optional<ClippedLattice> united(const Bodies& body, const Bodies& added, co
   const auto cell = cell_shape(bcc(), sink);
   auto made = clipped_lattice_body(*cell, last, body, {.added = added}, {}, sink);
   for (const Diagnostic& d : sink.diagnostics()) ADD_FAILURE() << render(d);
+  EXPECT_TRUE(made);
   if (!made) return {};
   EXPECT_TRUE(audit(made->body).clean());
   EXPECT_NEAR(measure(made->body).volume, volume, tolerance * volume);
