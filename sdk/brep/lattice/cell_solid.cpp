@@ -5,6 +5,7 @@
 #include <set>
 
 #include "face_moments.hpp"
+#include "lattice/jointed_cell.hpp"
 #include "lattice/primitive_field.hpp"
 #include "point_within.hpp"
 #include "stop_watch.hpp"
@@ -354,6 +355,25 @@ bool is_within(const CellPrimitive& primitive, const std::vector<CellPrimitive>&
          });
 }
 
+/// Without a boolean, where struts part on the balls of their nodes.
+std::optional<TopoDS_Shape> put_together(const std::vector<CellPrimitive>& primitives, const CellShape& cell) {
+  try {
+    std::string why;
+    auto inside = jointed_cell(primitives, cell.box, cell.tolerance(), why);
+    if (getenv("MESO_DBG")) fprintf(stderr, "jointed: %s\n", inside ? "ok" : why.c_str());
+    if (getenv("MESO_DBG") && !inside) for (auto& q : primitives) { if (auto* b = std::get_if<Ball>(&q)) fprintf(stderr, " ball %g %g %g  r %.6f\n", b->centre.x, b->centre.y, b->centre.z, b->radius); else { auto& f = std::get<Frustum>(q); fprintf(stderr, " strut %g %g %g  %g %g %g  r %.6f %.6f\n", f.start.x, f.start.y, f.start.z, f.end.x, f.end.y, f.end.z, f.start_radius, f.end_radius);} }
+    const Vec3 size = cell.size();
+    if (!inside || inside->IsNull()) return inside;
+    if (getenv("MESO_DBG")) fprintf(stderr, "vol %.9f %.9f on %d\n", volume_of(*inside), sampled_volume(primitives, cell.box), on_union(*inside, primitives, cell.box, cell.tolerance()));
+    if (contradicts(volume_of(*inside), sampled_volume(primitives, cell.box), size.x * size.y * size.z, 2e-3) ||
+        !on_union(*inside, primitives, cell.box, cell.tolerance()))
+      return {};
+    return inside;
+  } catch (const Standard_Failure&) {
+    return {};
+  }
+}
+
 /// The union of `solids`, cut to the box; of `primitives`, if these are known. Else `fault` says what is wrong.
 std::optional<TopoDS_Shape> fused_in_box(const std::vector<TopoDS_Shape>& solids,
                                          const std::vector<CellPrimitive>& primitives, const CellShape& cell,
@@ -399,6 +419,8 @@ std::optional<TopoDS_Shape> solid_in_box(const CellShape& cell, const Reach& rea
     solids.push_back(cell.solids[part.solid].Moved(TopLoc_Location(move)));
   }
   if (solids.empty()) return TopoDS_Shape();
+  if (cell.varied)
+    if (auto inside = put_together(primitives, cell)) return inside;
   // Surfaces that nearly coincide, or nearly meet in one curve, intersect at one tolerance and not at another.
   const double least = std::ranges::any_of(primitives, tapers) ? cell.tolerance() / 4 : 0;
   const char* fault = nullptr;

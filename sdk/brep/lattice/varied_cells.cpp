@@ -61,17 +61,19 @@ std::vector<std::uint32_t> VariedBoxes::parts_of(const Index3& box, const std::f
     const Index3 from = box + shift;
     if (!in_pattern(from)) return;
     const Vec3 by{shift[0] * cell_.size().x, shift[1] * cell_.size().y, shift[2] * cell_.size().z};
-    // What a neighbour adds to the cell's own; where the cell does not exist, to the balls that a strut ends in.
+    // What a neighbour adds to the cell's own; its struts add nothing to the balls that they end in, which may be larger
+    // than the cell's own about the same centres.
     std::vector<CellPrimitive> known = own;
-    if (own.empty() && shift != Index3{})
+    if (shift != Index3{})
       for (const std::uint32_t solid : cell_.varied->of(from))
         if (std::holds_alternative<Ball>(cell_.primitives[solid]))
           known.push_back(translated(cell_.primitives[solid], by));
     for (const std::uint32_t solid : cell_.varied->of(from)) {
       if (!reaches(solid, shift)) continue;
       const CellPrimitive primitive = translated(cell_.primitives[solid], by);
-      const bool may_be_covered = !own.empty() || !std::holds_alternative<Ball>(primitive);
-      if (shift != Index3{} && may_be_covered && covered(primitive, known, cell_.box)) continue;
+      const bool is_ball = std::holds_alternative<Ball>(primitive);
+      if (shift != Index3{} && !(is_ball && own.empty()) && covered(primitive, is_ball ? own : known, cell_.box))
+        continue;
       if (std::ranges::any_of(placed, [&](const CellPrimitive& p) { return same(p, primitive, cell_.tolerance()); }))
         continue;
       placed.push_back(primitive);
