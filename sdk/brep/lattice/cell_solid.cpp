@@ -355,6 +355,23 @@ bool is_within(const CellPrimitive& primitive, const std::vector<CellPrimitive>&
          });
 }
 
+/// Faces that close have no area as a vector, and enclose the same volume seen from any direction.
+bool is_sound(const TopoDS_Shape& solid, const std::vector<CellPrimitive>& primitives, const CellShape& cell) {
+  FaceMoments sum;
+  for (TopExp_Explorer it(solid, TopAbs_FACE); it.More(); it.Next()) {
+    const FaceMoments m = face_moments(TopoDS::Face(it.Current()));
+    sum.vector_area += m.vector_area;
+    sum.volume_moment += m.volume_moment;
+  }
+  const Vec3 size = cell.size();
+  const double box = size.x * size.y * size.z, volume = sum.volume_moment.x;
+  if (contradicts(norm(sum.vector_area), 0, norm(size) * norm(size), 1e-6) ||
+      contradicts(sum.volume_moment.y, volume, box, 1e-6) || contradicts(sum.volume_moment.z, volume, box, 1e-6))
+    return false;
+  return !contradicts(volume, sampled_volume(primitives, cell.box, 5), box, 1e-2) &&
+         on_union(solid, primitives, cell.box, cell.tolerance());
+}
+
 /// Without a boolean, where struts part on the balls of their nodes.
 std::optional<TopoDS_Shape> put_together(const std::vector<CellPrimitive>& primitives, const CellShape& cell) {
   try {
@@ -362,16 +379,11 @@ std::optional<TopoDS_Shape> put_together(const std::vector<CellPrimitive>& primi
     auto inside = jointed_cell(primitives, cell.box, cell.tolerance(), why);
     if (getenv("MESO_DBG")) fprintf(stderr, "jointed: %s\n", inside ? "ok" : why.c_str());
     if (getenv("MESO_DBG") && !inside) for (auto& q : primitives) { if (auto* b = std::get_if<Ball>(&q)) fprintf(stderr, " ball %g %g %g  r %.6f\n", b->centre.x, b->centre.y, b->centre.z, b->radius); else { auto& f = std::get<Frustum>(q); fprintf(stderr, " strut %g %g %g  %g %g %g  r %.6f %.6f\n", f.start.x, f.start.y, f.start.z, f.end.x, f.end.y, f.end.z, f.start_radius, f.end_radius);} }
-    const Vec3 size = cell.size();
-    if (!inside || inside->IsNull()) return inside;
-    if (getenv("MESO_DBG")) fprintf(stderr, "vol %.9f %.9f on %d\n", volume_of(*inside), sampled_volume(primitives, cell.box), on_union(*inside, primitives, cell.box, cell.tolerance()));
-    if (contradicts(volume_of(*inside), sampled_volume(primitives, cell.box), size.x * size.y * size.z, 2e-3) ||
-        !on_union(*inside, primitives, cell.box, cell.tolerance()))
-      return {};
-    return inside;
+    if (inside && !inside->IsNull() && getenv("MESO_DBG")) fprintf(stderr, "sound: %d\n", is_sound(*inside, primitives, cell));
+    if (!inside || inside->IsNull() || is_sound(*inside, primitives, cell)) return inside;
   } catch (const Standard_Failure&) {
-    return {};
   }
+  return {};
 }
 
 /// The union of `solids`, cut to the box; of `primitives`, if these are known. Else `fault` says what is wrong.
@@ -388,7 +400,7 @@ std::optional<TopoDS_Shape> fused_in_box(const std::vector<TopoDS_Shape>& solids
     const Vec3 size = cell.size();
     fault = "the fused unit cell is not the union of its balls and struts";
     if (!on_union(*inside, primitives, cell.box, cell.tolerance()) ||
-        contradicts(volume_of(*inside), sampled_volume(primitives, cell.box), size.x * size.y * size.z, 2e-3))
+        contradicts(volume_of(*inside), sampled_volume(primitives, cell.box, 7), size.x * size.y * size.z, 2e-3))
       return {};
     return inside;
   } catch (const Standard_Failure&) {

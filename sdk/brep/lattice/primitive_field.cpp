@@ -2,6 +2,10 @@
 #include "lattice/primitive_field.hpp"
 
 #include <algorithm>
+#include <array>
+#include <optional>
+
+#include "beam_graph_joints.hpp"
 
 namespace meso::brep {
 namespace {
@@ -56,6 +60,47 @@ struct CoverSearch {
     return true;
   }
 };
+
+bool is_in_ball(const Ball& ball, std::span<const CellPrimitive> others) {
+  return std::ranges::any_of(others, [&](const CellPrimitive& other) {
+    const Ball* larger = std::get_if<Ball>(&other);
+    return larger != nullptr && norm(larger->centre - ball.centre) + ball.radius <= larger->radius;
+  });
+}
+
+/// How far the circle in which a strut leaves a ball about its end reaches into the box, side by side; empty if there
+/// is no such ball.
+std::optional<std::array<double, 6>> depths_of_circle(const Frustum& strut, bool at_end,
+                                                      std::span<const CellPrimitive> others, const Box3& box) {
+  const Vec3 centre = at_end ? strut.end : strut.start, away = at_end ? strut.start - strut.end : strut.end - strut.start;
+  const double radius = at_end ? strut.end_radius : strut.start_radius, length = norm(away);
+  const double growth = (at_end ? strut.start_radius - strut.end_radius : strut.end_radius - strut.start_radius) / length;
+  double ball = 0;
+  for (const CellPrimitive& other : others)
+    if (const Ball* about = std::get_if<Ball>(&other); about != nullptr && norm(about->centre - centre) <= 1e-9 * length)
+      ball = std::max(ball, about->radius);
+  if (ball < radius) return {};
+  const StrutEnd circle = leave_ball(ball, radius, growth);
+  std::array<double, 6> depths{};
+  for (std::size_t side = 0; side < 6; ++side) {
+    const std::size_t i = side / 2;
+    const double sign = side % 2 == 0 ? 1 : -1, along = sign * away[i] / length;
+    depths[side] = sign * (centre[i] - (side % 2 == 0 ? box.min : box.max)[i]) + circle.along * along +
+                   circle.radius * std::sqrt(std::max(0.0, 1 - along * along));
+  }
+  return depths;
+}
+
+/// Between the balls about its ends, all of the strut is beyond one side of the box.
+bool is_beyond_but_for_balls(const Frustum& strut, std::span<const CellPrimitive> others, const Box3& box) {
+  const auto first = depths_of_circle(strut, false, others, box);
+  if (!first) return false;
+  const auto second = depths_of_circle(strut, true, others, box);
+  const double touches = 1e-7 * norm(box.max - box.min);
+  for (std::size_t side = 0; second && side < 6; ++side)
+    if ((*first)[side] <= touches && (*second)[side] <= touches) return true;
+  return false;
+}
 
 /// Halves the box until it is on one side of the surface, or `depth` times; then its centre speaks for all of it.
 double filled(std::span<const CellPrimitive> primitives, Vec3 centre, Vec3 half, int depth) {
@@ -134,6 +179,11 @@ bool covered(const CellPrimitive& primitive, std::span<const CellPrimitive> othe
   // Decided without a search that would follow two equal surfaces everywhere.
   for (const CellPrimitive& other : others)
     if (same(primitive, other, 1e-9 * norm(size))) return true;
+  // Or that would follow the points in which a strut touches a side of the box.
+  if (const Ball* ball = std::get_if<Ball>(&primitive); ball != nullptr && is_in_ball(*ball, others)) return true;
+  if (const Frustum* strut = std::get_if<Frustum>(&primitive);
+      strut != nullptr && is_beyond_but_for_balls(*strut, others, box))
+    return true;
   Box3 part = bounds(primitive);  // the search need not look beyond it
   if (!part.intersects(box)) return true;
   for (std::size_t i = 0; i < 3; ++i) {
@@ -144,8 +194,8 @@ bool covered(const CellPrimitive& primitive, std::span<const CellPrimitive> othe
   return search.covered_in(0.5 * (part.min + part.max), 0.5 * (part.max - part.min));
 }
 
-double sampled_volume(std::span<const CellPrimitive> primitives, const Box3& box) {
-  return filled(primitives, 0.5 * (box.min + box.max), 0.5 * (box.max - box.min), 7);
+double sampled_volume(std::span<const CellPrimitive> primitives, const Box3& box, int depth) {
+  return filled(primitives, 0.5 * (box.min + box.max), 0.5 * (box.max - box.min), depth);
 }
 
 }  // namespace meso::brep

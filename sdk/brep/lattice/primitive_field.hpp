@@ -24,7 +24,8 @@ namespace meso::brep {
 /// protrudes by less than 1e-4 of the box is not seen, and a proof that grows too long answers no.
 [[nodiscard]] bool covered(const CellPrimitive& primitive, std::span<const CellPrimitive> others, const Box3& box);
 
-/// Volume of the union inside the box by sampling, good to a few parts in a thousand.
-[[nodiscard]] double sampled_volume(std::span<const CellPrimitive> primitives, const Box3& box);
+/// Volume of the union inside the box by sampling: good to a few parts in a thousand, or, at a fiftieth of the cost and
+/// depth 5, in a hundred.
+[[nodiscard]] double sampled_volume(std::span<const CellPrimitive> primitives, const Box3& box, int depth = 7);
 
 }  // namespace meso::brep

@@ -24,7 +24,8 @@ std::uint32_t PrimitiveTable::number_of(const CellPrimitive& primitive) {
   return it->second;
 }
 
-VariedBoxes::VariedBoxes(const CellShape& cell) : cell_(cell) {
+VariedBoxes::VariedBoxes(const CellShape& cell)
+    : cell_(cell), placed_(std::max({cell.size().x, cell.size().y, cell.size().z})) {
   Box3 all;
   for (const CellPrimitive& primitive : cell.primitives) {
     bounds_.push_back(bounds(primitive));
@@ -77,9 +78,10 @@ std::vector<std::uint32_t> VariedBoxes::parts_of(const Index3& box, const std::f
       if (std::ranges::any_of(placed, [&](const CellPrimitive& p) { return same(p, primitive, cell_.tolerance()); }))
         continue;
       placed.push_back(primitive);
-      const auto [it, fresh] = numbers_.try_emplace({solid, shift}, static_cast<std::uint32_t>(reach_.parts.size()));
-      if (fresh) reach_.parts.push_back({solid, shift});
-      parts.push_back(it->second);
+      // Whichever neighbour sends it: boxes that hold the same are one kind.
+      const std::uint32_t number = placed_.number_of(primitive);
+      if (number == reach_.parts.size()) reach_.parts.push_back({solid, shift});
+      parts.push_back(number);
     }
   };
   add_from({});

@@ -65,7 +65,7 @@ class VariedBoxes {
   const CellShape& cell_;
   std::vector<Box3> bounds_;
   Reach reach_;
-  std::map<std::pair<std::uint32_t, Index3>, std::uint32_t> numbers_;
+  PrimitiveTable placed_;  ///< parallel to the parts
 };
 
 }  // namespace meso::brep
