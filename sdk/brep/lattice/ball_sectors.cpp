@@ -12,7 +12,7 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 constexpr double margin = 1e-6;    ///< radians by which a point is in a cap
-constexpr double near_gap = 0.1;   ///< radians between circles that are to be parted by a cut, as in beam_graph_cuts
+constexpr double near_gap = 0.02;  ///< radians between circles that are to be parted by a cut
 constexpr int azimuths = 16;       ///< at which a seam is tried
 constexpr int points_of_arc = 12;  ///< that stand for it
 
@@ -138,7 +138,7 @@ void BallSectors::cut(Ball& ball) {
       bool is_free = true;
       for (const double t : {0.0, 0.25, 0.5, 0.75, 1.0})
         is_free = is_free &&
-                  !is_covered(ball, towards(caps[i].axis, caps[j].axis, caps[i].angle + t * gap), t == 0 || t == 1 ? margin : -near_gap * gap);
+                  !is_covered(ball, towards(caps[i].axis, caps[j].axis, caps[i].angle + t * gap), t == 0 || t == 1 ? margin : -gap / 10);
       if (is_free) cut_between(ball, caps[i], caps[j]);
     }
 }

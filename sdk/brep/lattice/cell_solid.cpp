@@ -360,11 +360,13 @@ bool is_sound(const TopoDS_Shape& solid, const std::vector<CellPrimitive>& primi
   FaceMoments sum;
   for (TopExp_Explorer it(solid, TopAbs_FACE); it.More(); it.Next()) {
     const FaceMoments m = face_moments(TopoDS::Face(it.Current()));
+    if (getenv("MESO_DBG2")) { int w=0; for (TopExp_Explorer x(it.Current(), TopAbs_WIRE); x.More(); x.Next()) ++w; double tol=0; for (TopExp_Explorer x(it.Current(), TopAbs_EDGE); x.More(); x.Next()) tol=std::max(tol, BRep_Tool::Tolerance(TopoDS::Edge(x.Current()))); fprintf(stderr, "  face type %d wires %d area %.9f va %.9f %.9f %.9f tol %g\n", BRepAdaptor_Surface(TopoDS::Face(it.Current())).GetType(), w, m.area, m.vector_area.x, m.vector_area.y, m.vector_area.z, tol);}
     sum.vector_area += m.vector_area;
     sum.volume_moment += m.volume_moment;
   }
   const Vec3 size = cell.size();
   const double box = size.x * size.y * size.z, volume = sum.volume_moment.x;
+  if (getenv("MESO_DBG")) fprintf(stderr, "area %g vol %.9f %.9f %.9f sampled %.9f on %d\n", norm(sum.vector_area), sum.volume_moment.x, sum.volume_moment.y, sum.volume_moment.z, sampled_volume(primitives, cell.box, 5), on_union(solid, primitives, cell.box, cell.tolerance()));
   if (contradicts(norm(sum.vector_area), 0, norm(size) * norm(size), 1e-6) ||
       contradicts(sum.volume_moment.y, volume, box, 1e-6) || contradicts(sum.volume_moment.z, volume, box, 1e-6))
     return false;

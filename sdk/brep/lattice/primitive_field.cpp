@@ -102,10 +102,13 @@ bool is_beyond_but_for_balls(const Frustum& strut, std::span<const CellPrimitive
   return false;
 }
 
-/// Halves the box until it is on one side of the surface, or `depth` times; then its centre speaks for all of it.
+/// Halves the box until it is on one side of the surface, or `depth` times; then a flat surface, as far from its centre,
+/// speaks for all of it.
 double filled(std::span<const CellPrimitive> primitives, Vec3 centre, Vec3 half, int depth) {
   const double distance = signed_distance(primitives, centre);
-  if (depth == 0 || std::fabs(distance) >= norm(half)) return distance < 0 ? 8 * half.x * half.y * half.z : 0;
+  const double box = 8 * half.x * half.y * half.z;
+  if (std::fabs(distance) >= norm(half)) return distance < 0 ? box : 0;
+  if (depth == 0) return box * std::clamp(0.5 - distance / (2 * std::cbrt(box / 8)), 0.0, 1.0);
   double sum = 0;
   for (int corner = 0; corner < 8; ++corner)
     sum += filled(primitives, centre + octant(half, corner), half / 2, depth - 1);
