@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "in_memory.hpp"
 
+#include <ShapeFix_Face.hxx>
 #include <ShapeFix_Shape.hxx>
+#include <ShapeFix_Shell.hxx>
+#include <ShapeFix_Solid.hxx>
+#include <ShapeFix_Wire.hxx>
 
 #include "meso/brep/instance_map.hpp"
 #include "meso/brep/placement.hpp"
@@ -95,31 +99,55 @@ class ShellAssembler {
   std::vector<TopoDS_Edge> edge_shapes_;
 };
 
-TopoDS_Shape assemble(const Solid& solid) {
+enum class Mend { all, pcurves };
+
+/// What would divide edges that touch, or take out those that are short.
+void leave_edges(ShapeFix_Shape& fix) {
+  const Handle(ShapeFix_Face) face = fix.FixFaceTool();
+  const Handle(ShapeFix_Wire) wire = fix.FixWireTool();
+  fix.FixSolidTool()->FixShellOrientationMode() = 0;
+  fix.FixShellTool()->FixOrientationMode() = 0;
+  for (Standard_Integer* mode :
+       {&face->FixOrientationMode(), &face->FixAddNaturalBoundMode(), &face->FixSmallAreaWireMode(),
+        &face->RemoveSmallAreaFaceMode(), &face->FixIntersectingWiresMode(), &face->FixLoopWiresMode(),
+        &face->FixSplitFaceMode(), &wire->FixReorderMode(), &wire->FixSmallMode(), &wire->FixSelfIntersectionMode(),
+        &wire->FixLackingMode(), &wire->FixNotchedEdgesMode(), &wire->FixSelfIntersectingEdgeMode(),
+        &wire->FixIntersectingEdgesMode(), &wire->FixNonAdjacentIntersectingEdgesMode(), &wire->FixTailMode()})
+    *mode = 0;
+}
+
+TopoDS_Shape assemble(const Solid& solid, Mend mend) {
   BRep_Builder builder;
   TopoDS_Solid result;
   builder.MakeSolid(result);
   builder.Add(result, ShellAssembler(solid.outer).assemble());
   for (const Shell& hollow : solid.voids) builder.Add(result, ShellAssembler(hollow).assemble());
   ShapeFix_Shape fix(result);  // projects pcurves, adds seams and degenerate edges as the STEP reader does
+  if (mend == Mend::pcurves) leave_edges(fix);
   fix.Perform();
   return fix.Shape();
 }
 
-}  // namespace
-
-std::optional<TopoDS_Shape> to_shape(const Body& body, DiagnosticSink& sink) {
+std::optional<TopoDS_Shape> to_shape(const Body& body, Mend mend, DiagnosticSink& sink) {
   try {
-    if (body.solids.size() == 1) return assemble(body.solids[0]);
+    if (body.solids.size() == 1) return assemble(body.solids[0], mend);
     BRep_Builder builder;
     TopoDS_Compound all;
     builder.MakeCompound(all);
-    for (const Solid& solid : body.solids) builder.Add(all, assemble(solid));
+    for (const Solid& solid : body.solids) builder.Add(all, assemble(solid, mend));
     return all;
   } catch (const Standard_Failure& failure) {
     sink.report({.code = Code::geometry_kernel, .args = {"building a shape", what(failure)}});
     return std::nullopt;
   }
+}
+
+}  // namespace
+
+std::optional<TopoDS_Shape> to_shape(const Body& body, DiagnosticSink& sink) { return to_shape(body, Mend::all, sink); }
+
+std::optional<TopoDS_Shape> to_shape_as_is(const Body& body, DiagnosticSink& sink) {
+  return to_shape(body, Mend::pcurves, sink);
 }
 
 }  // namespace meso::brep

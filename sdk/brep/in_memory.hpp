@@ -19,4 +19,7 @@ namespace meso::brep {
 
 [[nodiscard]] std::optional<TopoDS_Shape> to_shape(const Body& body, DiagnosticSink& sink);
 
+/// The same where the body is known to be right: nothing is divided or left out, however closely edges pass each other.
+[[nodiscard]] std::optional<TopoDS_Shape> to_shape_as_is(const Body& body, DiagnosticSink& sink);
+
 }  // namespace meso::brep

@@ -357,6 +357,7 @@ bool is_within(const CellPrimitive& primitive, const std::vector<CellPrimitive>&
 
 /// Faces that close have no area as a vector, and enclose the same volume seen from any direction.
 bool is_sound(const TopoDS_Shape& solid, const std::vector<CellPrimitive>& primitives, const CellShape& cell) {
+  if (getenv("MESO_DBG4")) { TopTools_IndexedMapOfShape es; TopExp::MapShapes(solid, TopAbs_EDGE, es); for (int i=1;i<=es.Extent();++i) { auto e=TopoDS::Edge(es(i)); if (BRep_Tool::Degenerated(e)) continue; GProp_GProps g; BRepGProp::LinearProperties(e,g); if (g.Mass()<2e-2) fprintf(stderr,"short edge %g\n", g.Mass()); } }
   FaceMoments sum;
   for (TopExp_Explorer it(solid, TopAbs_FACE); it.More(); it.Next()) {
     const FaceMoments m = face_moments(TopoDS::Face(it.Current()));

@@ -173,7 +173,7 @@ std::optional<TopoDS_Shape> jointed_cell(const std::vector<CellPrimitive>& primi
   const Body body = maker.body();
   if (body.solids.empty()) return TopoDS_Shape();
   DiagnosticSink sink;
-  auto shape = to_shape(body, sink);
+  auto shape = to_shape_as_is(body, sink);
   if (!shape) why = "the faces in a box cannot be built";
   return shape;
 }

@@ -61,11 +61,31 @@ struct CoverSearch {
   }
 };
 
-bool is_in_ball(const Ball& ball, std::span<const CellPrimitive> others) {
-  return std::ranges::any_of(others, [&](const CellPrimitive& other) {
-    const Ball* larger = std::get_if<Ball>(&other);
-    return larger != nullptr && norm(larger->centre - ball.centre) + ball.radius <= larger->radius;
-  });
+/// What is about the same centre or axis decides at once; empty if nothing is.
+std::optional<bool> covered_by_like(const CellPrimitive& primitive, std::span<const CellPrimitive> others,
+                                    double tolerance) {
+  std::optional<bool> found;
+  for (const CellPrimitive& other : others) {
+    if (primitive.index() != other.index()) continue;
+    if (const Ball* ball = std::get_if<Ball>(&primitive)) {
+      const Ball& like = std::get<Ball>(other);
+      const double apart = norm(like.centre - ball->centre);
+      if (apart + ball->radius <= like.radius) return true;
+      if (apart <= tolerance) found = false;
+      continue;
+    }
+    const Frustum &strut = std::get<Frustum>(primitive), &like = std::get<Frustum>(other);
+    for (const bool turned : {false, true}) {
+      if (norm(strut.start - (turned ? like.end : like.start)) > tolerance ||
+          norm(strut.end - (turned ? like.start : like.end)) > tolerance)
+        continue;
+      if (strut.start_radius <= (turned ? like.end_radius : like.start_radius) &&
+          strut.end_radius <= (turned ? like.start_radius : like.end_radius))
+        return true;
+      found = false;
+    }
+  }
+  return found;
 }
 
 /// How far the circle in which a strut leaves a ball about its end reaches into the box, side by side; empty if there
@@ -183,7 +203,7 @@ bool covered(const CellPrimitive& primitive, std::span<const CellPrimitive> othe
   for (const CellPrimitive& other : others)
     if (same(primitive, other, 1e-9 * norm(size))) return true;
   // Or that would follow the points in which a strut touches a side of the box.
-  if (const Ball* ball = std::get_if<Ball>(&primitive); ball != nullptr && is_in_ball(*ball, others)) return true;
+  if (const auto decided = covered_by_like(primitive, others, 1e-9 * norm(size))) return *decided;
   if (const Frustum* strut = std::get_if<Frustum>(&primitive);
       strut != nullptr && is_beyond_but_for_balls(*strut, others, box))
     return true;
