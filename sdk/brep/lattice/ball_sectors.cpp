@@ -6,13 +6,13 @@
 #include <numbers>
 
 #include "beam_graph_ball_faces.hpp"
+#include "lattice/sector_cuts.hpp"
 
 namespace meso::brep {
 namespace {
 
 constexpr double pi = std::numbers::pi;
 constexpr double margin = 1e-6;    ///< radians by which a point is in a cap
-constexpr double near_gap = 0.02;  ///< radians between circles that are to be parted by a cut
 constexpr int azimuths = 16;       ///< at which a seam is tried
 constexpr int points_of_arc = 12;  ///< that stand for it
 
@@ -100,14 +100,6 @@ bool BallSectors::meet(Ball& ball, std::size_t i, std::size_t j) {
   return true;
 }
 
-bool BallSectors::share_side(const Cap& a, const Cap& b) const {
-  if (!a.strut) return false;
-  if (b.side) return box_.places[*a.strut / 2] == Place::in_sides;
-  const auto& of_a = box_.in_sides[*a.strut / 2];
-  const auto& of_b = box_.in_sides[*b.strut / 2];
-  return std::ranges::any_of(of_a, [&](Side side) { return std::ranges::find(of_b, side) != of_b.end(); });
-}
-
 void BallSectors::cut_between(Ball& ball, const BallCap& a, const BallCap& b) {
   const Vec3 from = a.angle > 0 ? towards(a.axis, b.axis, a.angle) : a.axis,
              to = b.angle > 0 ? towards(b.axis, a.axis, b.angle) : b.axis;
@@ -131,16 +123,9 @@ void BallSectors::cut(Ball& ball) {
     for (const auto& [a, b] : cuts.cuts) cut_between(ball, caps[a], caps[b]);
     return;
   }
-  for (std::size_t j = 0; j < caps.size(); ++j)
-    for (std::size_t i = 0; i < j; ++i) {
-      const double gap = angle_between(caps[i].axis, caps[j].axis) - caps[i].angle - caps[j].angle;
-      if (gap <= touching_gap || gap > near_gap || share_side(ball.caps[i], ball.caps[j])) continue;
-      bool is_free = true;
-      for (const double t : {0.0, 0.25, 0.5, 0.75, 1.0})
-        is_free = is_free &&
-                  !is_covered(ball, towards(caps[i].axis, caps[j].axis, caps[i].angle + t * gap), t == 0 || t == 1 ? margin : -gap / 10);
-      if (is_free) cut_between(ball, caps[i], caps[j]);
-    }
+  std::vector<bool> is_on_border;
+  for (const Cap& cap : ball.caps) is_on_border.push_back(cap.side || box_.places[*cap.strut / 2] == Place::in_sides);
+  for (const auto& [a, b] : sector_cuts(caps, is_on_border)) cut_between(ball, caps[a], caps[b]);
 }
 
 /// One line along each strut that is free in the box, as far from all corners of its two circles as may be.

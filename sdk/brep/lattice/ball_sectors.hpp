@@ -57,7 +57,6 @@ class BallSectors {
   [[nodiscard]] bool meet(Ball& ball, std::size_t i, std::size_t j);
   void mark(Ball& ball, std::size_t cap, Vec3 p);
   [[nodiscard]] bool runs_in(const Cap& strut, const Cap& side) const;
-  [[nodiscard]] bool share_side(const Cap& a, const Cap& b) const;
   void cut(Ball& ball);
   void cut_between(Ball& ball, const BallCap& a, const BallCap& b);
   void add_seams();

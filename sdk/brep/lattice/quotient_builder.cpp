@@ -71,7 +71,7 @@ class Builder {
   std::vector<bool> boundary_;  // per edge of the template
   std::map<std::vector<std::int32_t>, std::uint32_t> wall_orbits_;
   std::optional<EdgePolygons> polygons_;  // where a mesh is wanted
-  double deflection_ = 0;
+  MeshFineness fineness_;
 };
 
 bool Builder::on_boundary(const TopoDS_Edge& edge) const {
@@ -116,7 +116,7 @@ void Builder::add_meshes(const MeshFineness& fineness, const RunOptions& run) {
   std::vector<TemplateEdges> edges;
   for (const Source& source : sources_) edges.push_back(source.template_edges());
   polygons_ = mesh_alike(edges, geometry_, fineness, run);
-  deflection_ = fineness.deflection;
+  fineness_ = fineness;
 }
 
 void Builder::classify(CellFace& face, const FaceTemplate& value, const TopoDS_Face& shape) const {
@@ -167,11 +167,11 @@ void Builder::add_meshes_of(const Source& source, const CellKind& kind) {
   std::vector<MeshedFace> faces;
   for (std::size_t f = 0; f < kind.faces.size(); ++f) {
     FaceTemplate& face = geometry_.faces[kind.faces[f].face];
-    auto mesh = named_mesh(kind.shapes[f], source.template_edges(), geometry_, *polygons_);
+    auto mesh = named_mesh(kind.shapes[f], source.template_edges(), geometry_, *polygons_, fineness_);
     if (!mesh) throw Standard_Failure("a face has not the points of its edges");
     face.mesh = std::move(*mesh);
     const Handle(Geom_Surface) surface = BRep_Tool::Surface(kind.shapes[f]);
-    if (!std::holds_alternative<Plane>(face.surface)) fit_triangles(face.mesh, surface, geometry_.lattice, deflection_);
+    if (!std::holds_alternative<Plane>(face.surface)) fit_triangles(face.mesh, surface, geometry_.lattice, fineness_.deflection);
     faces.push_back({&face.mesh, surface, kind.faces[f].axis >= 0});
   }
   part_segments(faces, geometry_.lattice, cell_.box, 4 * tolerance_);

@@ -13,12 +13,11 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <span>
 #include <tuple>
 
+#include "lattice/border_mesh.hpp"
 #include "meso/brep/instance_map.hpp"
 #include "meso/brep/placement.hpp"
-#include "plane_mesh.hpp"
 #include "stop_watch.hpp"
 
 namespace meso::brep {
@@ -58,10 +57,6 @@ std::vector<Vec3> points_of(const OrbitMatcher::Match& match, const Template& ge
   return points;
 }
 
-const OrbitMatcher::Match& match_of(const TemplateEdges& kind, const TopoDS_Edge& edge) {
-  return kind.matches.at(static_cast<std::size_t>(kind.edges.FindIndex(edge) - 1));
-}
-
 /// BRepMesh divides each edge by what its faces need; here the division is given.
 class GivenEdges : public IMeshTools_ModelAlgo {
  public:
@@ -84,7 +79,7 @@ class GivenEdges : public IMeshTools_ModelAlgo {
   [[nodiscard]] Handle(IMeshTools_CurveTessellator) tessellator(const TopoDS_Edge& edge) const {
     const TopoDS_Edge forward = TopoDS::Edge(edge.Oriented(TopAbs_FORWARD));
     if (BRep_Tool::Degenerated(edge)) return new GivenPoints(forward, {});
-    return new GivenPoints(forward, points_of(match_of(kind_, edge), geometry_, polygons_));
+    return new GivenPoints(forward, points_of(kind_.match_of(edge), geometry_, polygons_));
   }
 
   const TemplateEdges& kind_;
@@ -120,10 +115,6 @@ void mesh_one(const TemplateEdges& kind, const Template& geometry, const EdgePol
   mesher.Perform(context, watch->Start());
 }
 
-using PointName = std::pair<std::array<double, 3>, Index3>;
-
-PointName name_of(const MeshPoint& p) { return {{p.point.x, p.point.y, p.point.z}, p.offset}; }
-
 /// OpenCASCADE puts more points on an edge where the parameters of a face run close, as they do at the pole of a ball.
 /// They are taken over for all faces; false if there are none.
 bool take_points(const TopoDS_Face& face, const TemplateEdges& kind, const Template& geometry, EdgePolygons& polygons,
@@ -135,7 +126,7 @@ bool take_points(const TopoDS_Face& face, const TemplateEdges& kind, const Templ
   for (TopExp_Explorer it(face, TopAbs_EDGE); it.More(); it.Next()) {
     const TopoDS_Edge& edge = TopoDS::Edge(it.Current());
     const Handle(Poly_PolygonOnTriangulation) polygon = BRep_Tool::PolygonOnTriangulation(edge, mesh, location);
-    const OrbitMatcher::Match& match = match_of(kind, edge);
+    const OrbitMatcher::Match& match = kind.match_of(edge);
     if (polygon.IsNull() || geometry.edges[match.edge].degenerate) continue;
     std::vector<Vec3>& known = polygons[match.edge];
     if (polygon->NbNodes() <= static_cast<int>(known.size()) + 2) continue;
@@ -147,60 +138,6 @@ bool take_points(const TopoDS_Face& face, const TemplateEdges& kind, const Templ
     taken[match.edge] = any = true;
   }
   return any;
-}
-
-/// A sliver between its edges, for which OpenCASCADE has no triangles: where they run in a plane, to a millionth of the
-/// cell, the plane is as good as the surface. Nothing where they do not, or are not one loop.
-std::optional<Triangulation> flat_mesh(const TopoDS_Face& face, const TemplateEdges& kind, const Template& geometry,
-                                       const EdgePolygons& polygons) {
-  std::map<PointName, std::vector<MeshPoint>> from;  // the points of an edge but its last, by its first
-  std::map<PointName, PointName> next;
-  for (TopExp_Explorer it(face, TopAbs_EDGE); it.More(); it.Next()) {
-    const TopoDS_Edge& edge = TopoDS::Edge(it.Current());
-    const OrbitMatcher::Match& match = match_of(kind, edge);
-    const EdgeTemplate& orbit = geometry.edges[match.edge];
-    if (orbit.degenerate) return {};
-    std::vector<MeshPoint> points;
-    points.push_back({geometry.vertices[orbit.vertex[0]], match.offset + orbit.vertex_offset[0]});
-    for (const Vec3 p : polygons[match.edge]) points.push_back({p, match.offset});
-    points.push_back({geometry.vertices[orbit.vertex[1]], match.offset + orbit.vertex_offset[1]});
-    if (match.flipped != (edge.Orientation() == TopAbs_REVERSED)) std::ranges::reverse(points);
-    const PointName start = name_of(points.front()), end = name_of(points.back());
-    points.pop_back();
-    if (!from.emplace(start, std::move(points)).second) return {};
-    next.emplace(start, end);
-  }
-  Triangulation out;
-  if (from.empty()) return {};
-  PointName at = from.begin()->first;
-  for (std::size_t edges = 0; edges < from.size(); ++edges) {
-    const auto points = from.find(at);
-    if (points == from.end() || (edges > 0 && points == from.begin())) return {};
-    out.points.insert(out.points.end(), points->second.begin(), points->second.end());
-    at = next.at(at);
-  }
-  if (at != from.begin()->first) return {};
-  std::vector<Vec3> places;
-  Vec3 middle{}, normal{};
-  for (const MeshPoint& p : out.points) middle += places.emplace_back(p.point + cell_origin(geometry, p.offset));
-  middle = middle / static_cast<double>(places.size());
-  for (std::size_t i = 0; i < places.size(); ++i)
-    normal += cross(places[i] - middle, places[(i + 1) % places.size()] - middle);
-  if (norm(normal) == 0) return {};
-  normal = normal / norm(normal);
-  const Vec3 x = (places[0] - middle) / norm(places[0] - middle), y = cross(normal, x);
-  std::vector<PlanePoint> flat;
-  std::vector<std::uint32_t> loop;
-  const double allowed = 1e-6 * std::cbrt(std::fabs(determinant(geometry.lattice)));
-  for (const Vec3 p : places) {
-    if (std::fabs(dot(p - middle, normal)) > allowed) return {};
-    loop.push_back(static_cast<std::uint32_t>(flat.size()));
-    flat.push_back({dot(p - middle, x), dot(p - middle, y)});
-  }
-  auto triangles = triangulate_between(flat, std::span(&loop, 1));
-  if (!triangles) return {};
-  out.triangles = std::move(*triangles);
-  return out;
 }
 
 /// Segments that have been gone along once more in one direction than in the other.
@@ -247,11 +184,12 @@ EdgePolygons mesh_alike(const std::vector<TemplateEdges>& kinds, const Template&
       mesh_one(kind, geometry, polygons, fineness, run);
       for (TopoDS_Iterator it(kind.shell); it.More(); it.Next()) {
         const TopoDS_Face& face = TopoDS::Face(it.Value());
-        if (named_mesh(face, kind, geometry, polygons)) continue;
+        if (named_mesh(face, kind, geometry, polygons, fineness)) continue;
         done = false;
+        if (getenv("MESO_DBG5") && round == most_divisions) { fprintf(stderr, "no mesh: surf %d\n", BRepAdaptor_Surface(face).GetType()); for (TopExp_Explorer e(face, TopAbs_EDGE); e.More(); e.Next()) { auto ed=TopoDS::Edge(e.Current()); gp_Pnt a=BRep_Tool::Pnt(TopExp::FirstVertex(ed)), b=BRep_Tool::Pnt(TopExp::LastVertex(ed)); fprintf(stderr, "  %.6f %.6f %.6f -> %.6f %.6f %.6f  n %zu\n", a.X(),a.Y(),a.Z(),b.X(),b.Y(),b.Z(), polygons[kind.match_of(ed).edge].size()); } }
         if (take_points(face, kind, geometry, polygons, taken)) continue;
         for (TopExp_Explorer edge(face, TopAbs_EDGE); edge.More(); edge.Next())
-          coarse[match_of(kind, TopoDS::Edge(edge.Current())).edge] = true;
+          coarse[kind.match_of(TopoDS::Edge(edge.Current())).edge] = true;
       }
     }
     if (done) return polygons;
@@ -280,7 +218,7 @@ std::optional<Triangulation> own_mesh(const TopoDS_Face& face, const TemplateEdg
     const TopoDS_Edge& edge = TopoDS::Edge(it.Current());
     const Handle(Poly_PolygonOnTriangulation) polygon = BRep_Tool::PolygonOnTriangulation(edge, mesh, location);
     if (polygon.IsNull()) return {};
-    const OrbitMatcher::Match& match = match_of(kind, edge);
+    const OrbitMatcher::Match& match = kind.match_of(edge);
     const EdgeTemplate& orbit = geometry.edges[match.edge];
     const auto& [nodes, reversed] =
         borders.emplace_back(std::vector<std::uint32_t>{}, edge.Orientation() == TopAbs_REVERSED);
@@ -324,9 +262,9 @@ std::optional<Triangulation> own_mesh(const TopoDS_Face& face, const TemplateEdg
 }  // namespace
 
 std::optional<Triangulation> named_mesh(const TopoDS_Face& face, const TemplateEdges& kind, const Template& geometry,
-                                        const EdgePolygons& polygons) {
+                                        const EdgePolygons& polygons, const MeshFineness& fineness) {
   auto mesh = own_mesh(face, kind, geometry, polygons);
-  return mesh ? std::move(mesh) : flat_mesh(face, kind, geometry, polygons);
+  return mesh ? std::move(mesh) : border_mesh(face, kind, geometry, polygons, fineness);
 }
 
 }  // namespace meso::brep

@@ -4,12 +4,14 @@
 // Private.
 //
 //   const EdgePolygons polygons = mesh_alike(kinds, geometry, fineness, run);  // leaves triangulations on the faces
-//   face.mesh = named_mesh(shape, face, kind, geometry, polygons);            // for every face read from them
+//   face.mesh = named_mesh(shape, kind, geometry, polygons, fineness);       // for every face read from them
 //
 // Each edge is divided once. A face that cannot be meshed within polygons so coarse has those of its edges divided
 // further, wherever they stand.
 
+#include <array>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "lattice/orbit_matcher.hpp"
@@ -23,10 +25,18 @@ struct TemplateEdges {
   const TopoDS_Shell& shell;
   const TopTools_IndexedMapOfShape& edges;
   const std::vector<OrbitMatcher::Match>& matches;  ///< of edges(i + 1)
+
+  [[nodiscard]] const OrbitMatcher::Match& match_of(const TopoDS_Edge& edge) const {
+    return matches.at(static_cast<std::size_t>(edges.FindIndex(edge) - 1));
+  }
 };
 
 /// Per edge of the template: the points between its ends.
 using EdgePolygons = std::vector<std::vector<Vec3>>;
+
+/// Two mesh points with one name are one.
+using PointName = std::pair<std::array<double, 3>, Index3>;
+[[nodiscard]] inline PointName name_of(const MeshPoint& p) { return {{p.point.x, p.point.y, p.point.z}, p.offset}; }
 
 /// Throws Standard_Failure, also where the run is to stop.
 [[nodiscard]] EdgePolygons mesh_alike(const std::vector<TemplateEdges>& kinds, const Template& geometry,
@@ -36,6 +46,7 @@ using EdgePolygons = std::vector<std::vector<Vec3>>;
 /// neighbours agree on it bit for bit; triangles that this folds up are left out. Empty if the triangles' border is not
 /// exactly the polygons of the edges.
 [[nodiscard]] std::optional<Triangulation> named_mesh(const TopoDS_Face& face, const TemplateEdges& kind,
-                                                      const Template& geometry, const EdgePolygons& polygons);
+                                                      const Template& geometry, const EdgePolygons& polygons,
+                                                      const MeshFineness& fineness);
 
 }  // namespace meso::brep
