@@ -31,7 +31,7 @@ bool has_on_left(const UnitLoop& loop, Vec3 p) {
 
 }  // namespace
 
-std::optional<AxisFrame> axes_off(Vec3 centre, const std::vector<UnitLoop>& loops) {
+std::optional<AxisFrame> axes_off(Vec3 centre, const std::vector<UnitLoop>& loops, int variant) {
   constexpr int poles = 48, azimuths = 16;
   const auto on_face = [&](Vec3 p) {
     return std::ranges::all_of(loops, [&](const auto& l) { return has_on_left(l, p); });
@@ -51,7 +51,7 @@ std::optional<AxisFrame> axes_off(Vec3 centre, const std::vector<UnitLoop>& loop
     best = AxisFrame{centre, z, x};
   };
   for (int i = 0; i < poles && most < 0.6; ++i) {
-    const double h = (i + 0.5) / poles, r = std::sqrt(1 - h * h), turn = 2.399963229728653 * i;
+    const double h = (i + 0.5) / poles, r = std::sqrt(1 - h * h), turn = 2.399963229728653 * i + variant;
     const Vec3 z{r * std::cos(turn), r * std::sin(turn), h}, x = across(z), y = cross(z, x);
     for (int a = 0; a < azimuths; ++a)
       consider(z, std::cos(2 * pi * a / azimuths) * x + std::sin(2 * pi * a / azimuths) * y);

@@ -247,7 +247,7 @@ std::vector<std::vector<std::size_t>> BallSectors::loops_of(const Ball& ball) co
   return loops;
 }
 
-bool BallSectors::add_faces(std::vector<FaceTemplate>& faces, std::string& why) {
+bool BallSectors::add_faces(int variant, std::vector<FaceTemplate>& faces, std::string& why) {
   for (const Ball& ball : balls_) {
     if (ball.arcs.empty() && !ball.caps.empty()) continue;
     const auto loops = loops_of(ball);
@@ -269,7 +269,7 @@ bool BallSectors::add_faces(std::vector<FaceTemplate>& faces, std::string& why) 
         auto& uses = face.loops.emplace_back();
         for (const std::size_t a : loops[l]) uses.push_back(ball.arcs[a].use);
       }
-      std::optional<AxisFrame> axes = axes_off(centre(ball), around);
+      std::optional<AxisFrame> axes = axes_off(centre(ball), around, variant);
       if (!axes) {
         if (members.size() < 2) {
           why = "a face goes around its ball";

@@ -19,8 +19,8 @@ class BallSectors {
 
   /// False, and why, where circles meet in other ways than told in jointed_box.hpp.
   [[nodiscard]] bool divide(std::string& why);
-  /// The faces of all balls; false as above.
-  [[nodiscard]] bool add_faces(std::vector<FaceTemplate>& faces, std::string& why);
+  /// The faces of all balls, about other axes for each variant; false as above.
+  [[nodiscard]] bool add_faces(int variant, std::vector<FaceTemplate>& faces, std::string& why);
 
   /// The arcs of a strut's circle that are seen, as the ball uses them.
   [[nodiscard]] const std::vector<Coedge>& ring(Leaving l) const { return rings_.at(l); }

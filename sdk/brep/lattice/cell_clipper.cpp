@@ -17,24 +17,26 @@ TopoDS_Shape moved(const TopoDS_Shape& shape, Vec3 by) {
 
 }  // namespace
 
-CellClipper::CellClipper(const std::vector<TopoDS_Shape>& solids, const BodySurface& surface, const CellGrid& grid,
-                         const RunOptions& run)
+CellClipper::CellClipper(const std::vector<TopoDS_Shape>& solids, const Otherwise& otherwise, const BodySurface& surface,
+                         const CellGrid& grid, const RunOptions& run)
     : CellClipper(
-          [&solids, deflection = deflection_in(grid)](std::uint32_t kind) {
-            return solids[kind].IsNull() ? WholeCell{} : whole_cell(solids[kind], deflection);
+          [&solids, otherwise, deflection = deflection_in(grid)](std::uint32_t kind, int variant) {
+            const TopoDS_Shape solid = variant == 0 ? solids[kind] : otherwise ? otherwise(kind, variant) : TopoDS_Shape();
+            return solid.IsNull() ? WholeCell{} : whole_cell(solid, deflection);
           },
           surface, grid, run) {}
 
-CellClipper::CellClipper(std::function<WholeCell(std::uint32_t)> frame, const BodySurface& surface,
+CellClipper::CellClipper(std::function<WholeCell(std::uint32_t, int)> frame, const BodySurface& surface,
                          const CellGrid& grid, const RunOptions& run)
     : make_(std::move(frame)), surface_(surface), local_(surface, grid), grid_(grid), run_(run) {
   const TopoDS_Shape body = BRepBuilderAPI_Copy(surface.body()).Shape();
   for (TopExp_Explorer it(body, TopAbs_SOLID); it.More(); it.Next()) body_.emplace_back(it.Current());
 }
 
-WholeCell& CellClipper::whole(std::uint32_t kind) {
-  const auto known = whole_.find(kind);
-  return known != whole_.end() ? known->second : whole_.emplace(kind, make_(kind)).first->second;
+WholeCell& CellClipper::whole(std::uint32_t kind, int variant) {
+  const std::pair key{kind, variant};
+  const auto known = whole_.find(key);
+  return known != whole_.end() ? known->second : whole_.emplace(key, make_(kind, variant)).first->second;
 }
 
 int CellClipper::side_of(Vec3 p) {
@@ -49,22 +51,28 @@ int CellClipper::side_of(Vec3 p) {
 
 ClippedCell CellClipper::clip(std::uint32_t kind, const Index3& cell, const std::vector<std::uint32_t>& faces) {
   const double a = grid_.tolerance;  // a millionth of the cell
-  const std::array<Attempt, 6> ladder{{{},
+  const std::array<Attempt, 9> ladder{{{},
                                        {.patches = false, .all_faces = true},
+                                       {.variant = 1},
+                                       {.variant = 2},
+                                       {.variant = 3},
                                        {.all_faces = true, .fuzzy = a},
                                        {.all_faces = true, .fuzzy = 10 * a},
                                        {.shift = {a, -0.7 * a, 0.4 * a}},
                                        {.shift = {-0.6 * a, a, -0.8 * a}}}};
   std::string fault;
+  std::size_t tried = 0;
   std::optional<ClippedCell> best;  // of those with rough edges
   const Vec3 size = grid_.size();
   const double rough = rough_edge * std::fmin(size.x, std::fmin(size.y, size.z));
   for (std::size_t n = 0; n < ladder.size() && !run_.should_stop(); ++n) {
     try {
-      WholeCell& all = whole(kind);
+      WholeCell& all = whole(kind, ladder[n].variant);
+      if (all.faces.empty() && ladder[n].variant > 0) continue;
       if (all.faces.empty()) return {};
+      ++tried;
       ClippedCell made = attempt(ladder[n], all, cell, faces);
-      made.attempts = n + 1;
+      made.attempts = tried;
       if (made.fault.empty() && made.edge_tolerance <= rough) return made;
       if (made.fault.empty() && (!best || made.edge_tolerance < best->edge_tolerance)) best = made;
       if (fault.empty()) fault = made.fault;
@@ -80,7 +88,7 @@ ClippedCell CellClipper::clip(std::uint32_t kind, const Index3& cell, const std:
     return out + ")";
   };
   return {.fault = "cell " + listed(cell) + ", " + listed(grid_.origin(cell) - grid_.first.min) +
-                   " mm from the first, in " + std::to_string(ladder.size()) + " ways: " + fault};
+                   " mm from the first, in " + std::to_string(tried) + " ways: " + fault};
 }
 
 ClippedCell CellClipper::attempt(const Attempt& how, WholeCell& whole, const Index3& cell,

@@ -84,7 +84,7 @@ class Shares {
   [[nodiscard]] std::string run(const RunOptions& run) {
     std::deque<CellClipper> clippers;
     for (std::size_t i = 0; i < workers_for(tasks_.size() - done_, run); ++i)
-      clippers.emplace_back(judged_.solids, surface_, grid_, run);
+      clippers.emplace_back(judged_.solids, CellClipper::Otherwise{}, surface_, grid_, run);
     (void)in_parallel(tasks_.size() - done_, run, [&](std::size_t worker, std::size_t i) {
       Task& task = tasks_[done_ + i];
       ClippedCell clipped = clippers[worker].clip(task.solid, task.box, surface_.faces(task.box));

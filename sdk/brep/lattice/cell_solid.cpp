@@ -355,6 +355,21 @@ bool is_within(const CellPrimitive& primitive, const std::vector<CellPrimitive>&
          });
 }
 
+Vec3 shift_of(const Reach::Part& part, const CellShape& cell) {
+  const Vec3 size = cell.size();
+  return {part.shift[0] * size.x, part.shift[1] * size.y, part.shift[2] * size.z};
+}
+
+/// None where the solids are not beams.
+std::vector<CellPrimitive> primitives_in_box(const CellShape& cell, const Reach& reach,
+                                             const std::vector<std::uint32_t>& parts) {
+  std::vector<CellPrimitive> out;
+  for (const std::uint32_t index : parts)
+    if (!cell.primitives.empty())
+      out.push_back(translated(cell.primitives[reach.parts[index].solid], shift_of(reach.parts[index], cell)));
+  return out;
+}
+
 /// Faces that close have no area as a vector, and enclose the same volume seen from any direction.
 bool is_sound(const TopoDS_Shape& solid, const std::vector<CellPrimitive>& primitives, const CellShape& cell) {
   if (getenv("MESO_DBG4")) { TopTools_IndexedMapOfShape es; TopExp::MapShapes(solid, TopAbs_EDGE, es); for (int i=1;i<=es.Extent();++i) { auto e=TopoDS::Edge(es(i)); if (BRep_Tool::Degenerated(e)) continue; GProp_GProps g; BRepGProp::LinearProperties(e,g); if (g.Mass()<2e-2) fprintf(stderr,"short edge %g\n", g.Mass()); } }
@@ -376,10 +391,11 @@ bool is_sound(const TopoDS_Shape& solid, const std::vector<CellPrimitive>& primi
 }
 
 /// Without a boolean, where struts part on the balls of their nodes.
-std::optional<TopoDS_Shape> put_together(const std::vector<CellPrimitive>& primitives, const CellShape& cell) {
+std::optional<TopoDS_Shape> put_together(const std::vector<CellPrimitive>& primitives, const CellShape& cell,
+                                         int variant) {
   try {
     std::string why;
-    auto inside = jointed_cell(primitives, cell.box, cell.tolerance(), why);
+    auto inside = jointed_cell(primitives, cell.box, cell.tolerance(), variant, why);
     if (getenv("MESO_DBG")) fprintf(stderr, "jointed: %s\n", inside ? "ok" : why.c_str());
     if (getenv("MESO_DBG") && !inside) for (auto& q : primitives) { if (auto* b = std::get_if<Ball>(&q)) fprintf(stderr, " ball %g %g %g  r %.6f\n", b->centre.x, b->centre.y, b->centre.z, b->radius); else { auto& f = std::get<Frustum>(q); fprintf(stderr, " strut %g %g %g  %g %g %g  r %.6f %.6f\n", f.start.x, f.start.y, f.start.z, f.end.x, f.end.y, f.end.z, f.start_radius, f.end_radius);} }
     if (inside && !inside->IsNull() && getenv("MESO_DBG")) fprintf(stderr, "sound: %d\n", is_sound(*inside, primitives, cell));
@@ -417,25 +433,19 @@ std::optional<TopoDS_Shape> fused_in_box(const std::vector<TopoDS_Shape>& solids
 std::optional<TopoDS_Shape> solid_in_box(const CellShape& cell, const Reach& reach,
                                          const std::vector<std::uint32_t>& parts, const RunOptions& run,
                                          DiagnosticSink& sink) {
-  const Vec3 size = cell.size();
-  const auto by = [&](const Reach::Part& part) {
-    return Vec3{part.shift[0] * size.x, part.shift[1] * size.y, part.shift[2] * size.z};
-  };
   std::vector<TopoDS_Shape> solids;
-  std::vector<CellPrimitive> primitives;
-  for (const std::uint32_t index : parts)
-    if (!cell.primitives.empty())
-      primitives.push_back(translated(cell.primitives[reach.parts[index].solid], by(reach.parts[index])));
+  const std::vector<CellPrimitive> primitives = primitives_in_box(cell, reach, parts);
   for (std::size_t n = 0; n < parts.size(); ++n) {
     if (!primitives.empty() && is_within(primitives[n], primitives)) continue;
     const Reach::Part& part = reach.parts[parts[n]];
     gp_Trsf move;
-    move.SetTranslation(gp_Vec(by(part).x, by(part).y, by(part).z));
+    const Vec3 by = shift_of(part, cell);
+    move.SetTranslation(gp_Vec(by.x, by.y, by.z));
     solids.push_back(cell.solids[part.solid].Moved(TopLoc_Location(move)));
   }
   if (solids.empty()) return TopoDS_Shape();
   if (cell.varied)
-    if (auto inside = put_together(primitives, cell)) return inside;
+    if (auto inside = put_together(primitives, cell, 0)) return inside;
   // Surfaces that nearly coincide, or nearly meet in one curve, intersect at one tolerance and not at another.
   const double least = std::ranges::any_of(primitives, tapers) ? cell.tolerance() / 4 : 0;
   const char* fault = nullptr;
@@ -443,6 +453,12 @@ std::optional<TopoDS_Shape> solid_in_box(const CellShape& cell, const Reach& rea
     if (auto inside = fused_in_box(solids, primitives, cell, fuzzy, run, fault)) return inside;
   if (!run.should_stop()) sink.report({.code = Code::geometry_not_repeatable, .args = {fault}});
   return {};
+}
+
+TopoDS_Shape solid_in_box_otherwise(const CellShape& cell, const Reach& reach, const std::vector<std::uint32_t>& parts,
+                                    int variant) {
+  if (!cell.varied || parts.empty()) return {};
+  return put_together(primitives_in_box(cell, reach, parts), cell, variant).value_or(TopoDS_Shape());
 }
 
 }  // namespace meso::brep

@@ -103,10 +103,11 @@ class ClipPlan {
 };
 
 /// All tasks, by as many threads as the run allows; which thread does which does not show in the results.
-void clip_all(std::vector<ClipTask>& tasks, const std::vector<TopoDS_Shape>& solids, const BodySurface& surface,
-              const CellGrid& grid, const RunOptions& run) {
+void clip_all(std::vector<ClipTask>& tasks, const std::vector<TopoDS_Shape>& solids,
+              const CellClipper::Otherwise& otherwise, const BodySurface& surface, const CellGrid& grid,
+              const RunOptions& run) {
   std::deque<CellClipper> clippers;  // they cannot be moved
-  for (std::size_t i = 0; i < workers_for(tasks.size(), run); ++i) clippers.emplace_back(solids, surface, grid, run);
+  for (std::size_t i = 0; i < workers_for(tasks.size(), run); ++i) clippers.emplace_back(solids, otherwise, surface, grid, run);
   (void)in_parallel(tasks.size(), run, [&](std::size_t worker, std::size_t i) {
     ClipTask& task = tasks[i];
     task.result = clippers[worker].clip(task.kind, task.cell, surface.faces(task.cell));
@@ -233,7 +234,10 @@ std::string LatticeMaker::clip(const KeptCells& cells, CellKinds& kinds) {
   std::vector<bool> is_cut(cells.count());
   if (surface_) {
     ClipPlan plan(*surface_, cells, kinds, grid_, options_.reuse, [&](const Index3& index) { return in_body(index); });
-    clip_all(plan.tasks, solids_, *surface_, grid_, run_);
+    const auto otherwise = [&](std::uint32_t kind, int variant) {
+      return solid_in_box_otherwise(cell_, reach(), kinds.parts()[kind], variant);
+    };
+    clip_all(plan.tasks, solids_, otherwise, *surface_, grid_, run_);
     if (run_.should_stop()) return {};
     std::vector<std::uint32_t> kind_of_task;
     for (ClipTask& task : plan.tasks) {

@@ -19,8 +19,8 @@ class CellMaker {
   CellMaker(const JointedBox& box, std::string& why)
       : box_(box), why_(why), edges_(*geometry_, box.tolerance), sectors_(box, edges_) {}
 
-  bool make() {
-    if (!sectors_.divide(why_) || !sectors_.add_faces(geometry_->faces, why_)) return false;
+  bool make(int variant) {
+    if (!sectors_.divide(why_) || !sectors_.add_faces(variant, geometry_->faces, why_)) return false;
     for (std::uint32_t s = 0; s < box_.places.size(); ++s)
       if (box_.places[s] != Place::beyond && !box_.joints.is_swallowed[s] && !add_strut(s)) return false;
     return add_walls(box_, sectors_, lines_, edges_, geometry_->faces, why_) && is_closed();
@@ -165,11 +165,11 @@ class CellMaker {
 }  // namespace
 
 std::optional<TopoDS_Shape> jointed_cell(const std::vector<CellPrimitive>& primitives, const Box3& box,
-                                         double tolerance, std::string& why) {
+                                         double tolerance, int variant, std::string& why) {
   const auto jointed = jointed_box(primitives, box, tolerance, why);
   if (!jointed) return {};
   CellMaker maker(*jointed, why);
-  if (!maker.make()) return {};
+  if (!maker.make(variant)) return {};
   const Body body = maker.body();
   if (body.solids.empty()) return TopoDS_Shape();
   DiagnosticSink sink;

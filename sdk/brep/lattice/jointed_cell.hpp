@@ -14,8 +14,9 @@
 namespace meso::brep {
 
 /// The union of balls and struts in the box, as a compound of solids; null if nothing of it is there. Empty, and why,
-/// where it is not of that form. May throw Standard_Failure. Thread rule: pure.
+/// where it is not of that form. For each variant its balls have other axes, which show in how a body cuts them.
+/// May throw Standard_Failure. Thread rule: pure.
 [[nodiscard]] std::optional<TopoDS_Shape> jointed_cell(const std::vector<CellPrimitive>& primitives, const Box3& box,
-                                                       double tolerance, std::string& why);
+                                                       double tolerance, int variant, std::string& why);
 
 }  // namespace meso::brep

@@ -89,7 +89,8 @@ std::vector<TopoDS_Shape> UnionPlan::outlines_of(const FrameKey& key) const {
 }
 
 void UnionPlan::make_all(const RunOptions& run) {
-  const auto frame = [&](std::uint32_t number) {
+  const auto frame = [&](std::uint32_t number, int variant) {
+    if (variant > 0) return WholeCell{};
     const FrameKey& key = frames_[number];
     return box_frame(key.own == none ? TopoDS_Shape() : solids_[key.own], grid_.first, outlines_of(key),
                      deflection_in(grid_), run);
