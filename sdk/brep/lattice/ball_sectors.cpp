@@ -37,11 +37,8 @@ BallSectors::Ball BallSectors::ball_of(std::uint32_t node) const {
   Ball ball{.node = node, .caps = {}, .cuts = {}, .arcs = {}};
   for (const Leaving l : box_.joints.leaving[node])
     if (box_.places[l / 2] != Place::beyond)
-      ball.caps.push_back({.axis = box_.joints.direction(l),
-                           .angle = box_.joints.end(l).angle,
-                           .strut = l,
-                           .side = {},
-                           .marks = {}});
+      ball.caps.push_back(
+          {.axis = box_.joints.direction(l), .angle = box_.joints.end(l).angle, .strut = l, .side = {}, .marks = {}});
   for (Side side = 0; side < 6; ++side)
     if (const double depth = box_.depth(centre(ball), side); depth < radius(ball))
       ball.caps.push_back({.axis = outward(side),
@@ -52,13 +49,10 @@ BallSectors::Ball BallSectors::ball_of(std::uint32_t node) const {
   return ball;
 }
 
-Vec3 BallSectors::seen(const Ball& ball, std::uint32_t vertex) const {
-  return unit(edges_.at(vertex) - centre(ball));
-}
+Vec3 BallSectors::seen(const Ball& ball, std::uint32_t vertex) const { return unit(edges_.at(vertex) - centre(ball)); }
 
 bool BallSectors::is_covered(const Ball& ball, Vec3 p, double by) {
-  return std::ranges::any_of(ball.caps,
-                             [&](const Cap& cap) { return angle_between(cap.axis, p) < cap.angle - by; });
+  return std::ranges::any_of(ball.caps, [&](const Cap& cap) { return angle_between(cap.axis, p) < cap.angle - by; });
 }
 
 bool BallSectors::runs_in(const Cap& strut, const Cap& side) const {
@@ -169,8 +163,7 @@ void BallSectors::add_arcs(Ball& ball) {
   const auto add = [&](Vec3 axis, double angle, std::uint32_t from, std::uint32_t to, bool is_cut) {
     const Coedge use = edges_.arc(centre(ball) + radius(ball) * std::cos(angle) * axis, axis,
                                   radius(ball) * std::sin(angle), from, to);
-    ball.arcs.push_back(
-        {use, {.axis = axis, .angle = angle, .from = seen(ball, from), .to = seen(ball, to)}, is_cut});
+    ball.arcs.push_back({use, {.axis = axis, .angle = angle, .from = seen(ball, from), .to = seen(ball, to)}, is_cut});
     return use;
   };
   for (Cap& cap : ball.caps) {
@@ -189,8 +182,8 @@ void BallSectors::add_arcs(Ball& ball) {
       double last = turn(to);
       if (m + 1 == cap.marks.size()) last += 2 * pi;
       const double middle = (first + last) / 2;
-      const Vec3 p = std::cos(cap.angle) * cap.axis +
-                     std::sin(cap.angle) * (std::cos(middle) * x + std::sin(middle) * y);
+      const Vec3 p =
+          std::cos(cap.angle) * cap.axis + std::sin(cap.angle) * (std::cos(middle) * x + std::sin(middle) * y);
       if (is_covered(ball, p, margin / 10)) continue;
       const Coedge use = add(cap.axis, cap.angle, from, to, false);
       (cap.strut ? rings_[*cap.strut] : in_sides_[*cap.side]).push_back(use);

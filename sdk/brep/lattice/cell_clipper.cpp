@@ -17,11 +17,13 @@ TopoDS_Shape moved(const TopoDS_Shape& shape, Vec3 by) {
 
 }  // namespace
 
-CellClipper::CellClipper(const std::vector<TopoDS_Shape>& solids, const Otherwise& otherwise, const BodySurface& surface,
-                         const CellGrid& grid, const RunOptions& run)
+CellClipper::CellClipper(const std::vector<TopoDS_Shape>& solids, const Otherwise& otherwise,
+                         const BodySurface& surface, const CellGrid& grid, const RunOptions& run)
     : CellClipper(
           [&solids, otherwise, deflection = deflection_in(grid)](std::uint32_t kind, int variant) {
-            const TopoDS_Shape solid = variant == 0 ? solids[kind] : otherwise ? otherwise(kind, variant) : TopoDS_Shape();
+            const TopoDS_Shape solid = variant == 0 ? solids[kind]
+                                       : otherwise  ? otherwise(kind, variant)
+                                                    : TopoDS_Shape();
             return solid.IsNull() ? WholeCell{} : whole_cell(solid, deflection);
           },
           surface, grid, run) {}

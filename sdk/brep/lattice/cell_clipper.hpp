@@ -5,7 +5,8 @@
 //
 // A result that does not pass the checks of cell_split, or whose edges are known to less than a thousandth of the cell,
 // is made again in other ways: with the whole faces of body and cell, with other parameters of the cell's faces, with a
-// fuzzy tolerance, with the body shifted by a millionth of the cell. How many ways were tried is told; of results with rough edges the best is taken.
+// fuzzy tolerance, with the body shifted by a millionth of the cell. How many ways were tried is told; of results with
+// rough edges the best is taken.
 //
 // Thread rule: one for each thread; it works on copies of its own, because OpenCASCADE writes to the shapes it reads.
 

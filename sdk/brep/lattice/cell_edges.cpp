@@ -50,9 +50,9 @@ Coedge CellEdges::known_or(const EdgeTemplate& edge, Vec3 middle) {
     const bool same = ends == edge.vertex, back = ends[0] == edge.vertex[1] && ends[1] == edge.vertex[0];
     if ((!same && !back) || norm(middles_[e] - middle) > 10 * tolerance_) continue;
     if (edge.vertex[0] != edge.vertex[1]) return {.edge = e, .reversed = !same};
-    return {.edge = e,
-            .reversed = dot(std::get<Circle>(geometry_.edges[e].curve).frame.z,
-                            std::get<Circle>(edge.curve).frame.z) < 0};
+    return {
+        .edge = e,
+        .reversed = dot(std::get<Circle>(geometry_.edges[e].curve).frame.z, std::get<Circle>(edge.curve).frame.z) < 0};
   }
   geometry_.edges.push_back(edge);
   middles_.push_back(middle);

@@ -372,17 +372,14 @@ std::vector<CellPrimitive> primitives_in_box(const CellShape& cell, const Reach&
 
 /// Faces that close have no area as a vector, and enclose the same volume seen from any direction.
 bool is_sound(const TopoDS_Shape& solid, const std::vector<CellPrimitive>& primitives, const CellShape& cell) {
-  if (getenv("MESO_DBG4")) { TopTools_IndexedMapOfShape es; TopExp::MapShapes(solid, TopAbs_EDGE, es); for (int i=1;i<=es.Extent();++i) { auto e=TopoDS::Edge(es(i)); if (BRep_Tool::Degenerated(e)) continue; GProp_GProps g; BRepGProp::LinearProperties(e,g); if (g.Mass()<2e-2) fprintf(stderr,"short edge %g\n", g.Mass()); } }
   FaceMoments sum;
   for (TopExp_Explorer it(solid, TopAbs_FACE); it.More(); it.Next()) {
     const FaceMoments m = face_moments(TopoDS::Face(it.Current()));
-    if (getenv("MESO_DBG2")) { int w=0; for (TopExp_Explorer x(it.Current(), TopAbs_WIRE); x.More(); x.Next()) ++w; double tol=0; for (TopExp_Explorer x(it.Current(), TopAbs_EDGE); x.More(); x.Next()) tol=std::max(tol, BRep_Tool::Tolerance(TopoDS::Edge(x.Current()))); fprintf(stderr, "  face type %d wires %d area %.9f va %.9f %.9f %.9f tol %g\n", BRepAdaptor_Surface(TopoDS::Face(it.Current())).GetType(), w, m.area, m.vector_area.x, m.vector_area.y, m.vector_area.z, tol);}
     sum.vector_area += m.vector_area;
     sum.volume_moment += m.volume_moment;
   }
   const Vec3 size = cell.size();
   const double box = size.x * size.y * size.z, volume = sum.volume_moment.x;
-  if (getenv("MESO_DBG")) fprintf(stderr, "area %g vol %.9f %.9f %.9f sampled %.9f on %d\n", norm(sum.vector_area), sum.volume_moment.x, sum.volume_moment.y, sum.volume_moment.z, sampled_volume(primitives, cell.box, 5), on_union(solid, primitives, cell.box, cell.tolerance()));
   if (contradicts(norm(sum.vector_area), 0, norm(size) * norm(size), 1e-6) ||
       contradicts(sum.volume_moment.y, volume, box, 1e-6) || contradicts(sum.volume_moment.z, volume, box, 1e-6))
     return false;
@@ -396,9 +393,6 @@ std::optional<TopoDS_Shape> put_together(const std::vector<CellPrimitive>& primi
   try {
     std::string why;
     auto inside = jointed_cell(primitives, cell.box, cell.tolerance(), variant, why);
-    if (getenv("MESO_DBG")) fprintf(stderr, "jointed: %s\n", inside ? "ok" : why.c_str());
-    if (getenv("MESO_DBG") && !inside) for (auto& q : primitives) { if (auto* b = std::get_if<Ball>(&q)) fprintf(stderr, " ball %g %g %g  r %.6f\n", b->centre.x, b->centre.y, b->centre.z, b->radius); else { auto& f = std::get<Frustum>(q); fprintf(stderr, " strut %g %g %g  %g %g %g  r %.6f %.6f\n", f.start.x, f.start.y, f.start.z, f.end.x, f.end.y, f.end.z, f.start_radius, f.end_radius);} }
-    if (inside && !inside->IsNull() && getenv("MESO_DBG")) fprintf(stderr, "sound: %d\n", is_sound(*inside, primitives, cell));
     if (!inside || inside->IsNull() || is_sound(*inside, primitives, cell)) return inside;
   } catch (const Standard_Failure&) {
   }

@@ -107,7 +107,8 @@ void clip_all(std::vector<ClipTask>& tasks, const std::vector<TopoDS_Shape>& sol
               const CellClipper::Otherwise& otherwise, const BodySurface& surface, const CellGrid& grid,
               const RunOptions& run) {
   std::deque<CellClipper> clippers;  // they cannot be moved
-  for (std::size_t i = 0; i < workers_for(tasks.size(), run); ++i) clippers.emplace_back(solids, otherwise, surface, grid, run);
+  for (std::size_t i = 0; i < workers_for(tasks.size(), run); ++i)
+    clippers.emplace_back(solids, otherwise, surface, grid, run);
   (void)in_parallel(tasks.size(), run, [&](std::size_t worker, std::size_t i) {
     ClipTask& task = tasks[i];
     task.result = clippers[worker].clip(task.kind, task.cell, surface.faces(task.cell));

@@ -153,7 +153,6 @@ void FaceDivision::read_edges() {
       if (BRep_Tool::Degenerated(edge)) continue;
       if (edge.Orientation() == TopAbs_INTERNAL) {
         out_.loose = true;
-        if (getenv("MESO_DBG5")) { gp_Pnt a=BRep_Tool::Pnt(TopExp::FirstVertex(edge)), b=BRep_Tool::Pnt(TopExp::LastVertex(edge)); fprintf(stderr, "loose on surf %d cell %d: %.6f %.6f %.6f -> %.6f %.6f %.6f\n", BRepAdaptor_Surface(out_.pieces[p].face).GetType(), p < out_.of_cell, a.X(),a.Y(),a.Z(),b.X(),b.Y(),b.Z()); for (TopExp_Explorer e(out_.pieces[p].face, TopAbs_EDGE); e.More(); e.Next()) { auto ed=TopoDS::Edge(e.Current()); a=BRep_Tool::Pnt(TopExp::FirstVertex(ed)); b=BRep_Tool::Pnt(TopExp::LastVertex(ed)); fprintf(stderr, "  %.6f %.6f %.6f -> %.6f %.6f %.6f  o %d tol %g\n", a.X(),a.Y(),a.Z(),b.X(),b.Y(),b.Z(), ed.Orientation(), BRep_Tool::Tolerance(ed)); } }
         continue;
       }
       const auto index = static_cast<std::size_t>(out_.edges.Add(edge)) - 1;

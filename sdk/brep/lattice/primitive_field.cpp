@@ -92,12 +92,15 @@ std::optional<bool> covered_by_like(const CellPrimitive& primitive, std::span<co
 /// is no such ball.
 std::optional<std::array<double, 6>> depths_of_circle(const Frustum& strut, bool at_end,
                                                       std::span<const CellPrimitive> others, const Box3& box) {
-  const Vec3 centre = at_end ? strut.end : strut.start, away = at_end ? strut.start - strut.end : strut.end - strut.start;
+  const Vec3 centre = at_end ? strut.end : strut.start,
+             away = at_end ? strut.start - strut.end : strut.end - strut.start;
   const double radius = at_end ? strut.end_radius : strut.start_radius, length = norm(away);
-  const double growth = (at_end ? strut.start_radius - strut.end_radius : strut.end_radius - strut.start_radius) / length;
+  const double growth =
+      (at_end ? strut.start_radius - strut.end_radius : strut.end_radius - strut.start_radius) / length;
   double ball = 0;
   for (const CellPrimitive& other : others)
-    if (const Ball* about = std::get_if<Ball>(&other); about != nullptr && norm(about->centre - centre) <= 1e-9 * length)
+    if (const Ball* about = std::get_if<Ball>(&other);
+        about != nullptr && norm(about->centre - centre) <= 1e-9 * length)
       ball = std::max(ball, about->radius);
   if (ball < radius) return {};
   const StrutEnd circle = leave_ball(ball, radius, growth);
@@ -122,8 +125,8 @@ bool is_beyond_but_for_balls(const Frustum& strut, std::span<const CellPrimitive
   return false;
 }
 
-/// Halves the box until it is on one side of the surface, or `depth` times; then a flat surface, as far from its centre,
-/// speaks for all of it.
+/// Halves the box until it is on one side of the surface, or `depth` times; then a flat surface, as far from its
+/// centre, speaks for all of it.
 double filled(std::span<const CellPrimitive> primitives, Vec3 centre, Vec3 half, int depth) {
   const double distance = signed_distance(primitives, centre);
   const double box = 8 * half.x * half.y * half.z;

@@ -171,7 +171,8 @@ void Builder::add_meshes_of(const Source& source, const CellKind& kind) {
     if (!mesh) throw Standard_Failure("a face has not the points of its edges");
     face.mesh = std::move(*mesh);
     const Handle(Geom_Surface) surface = BRep_Tool::Surface(kind.shapes[f]);
-    if (!std::holds_alternative<Plane>(face.surface)) fit_triangles(face.mesh, surface, geometry_.lattice, fineness_.deflection);
+    if (!std::holds_alternative<Plane>(face.surface))
+      fit_triangles(face.mesh, surface, geometry_.lattice, fineness_.deflection);
     faces.push_back({&face.mesh, surface, kind.faces[f].axis >= 0});
   }
   part_segments(faces, geometry_.lattice, cell_.box, 4 * tolerance_);
@@ -233,11 +234,6 @@ bool Builder::find_clusters(CellKind& kind, const std::vector<std::uint32_t>& fa
   UnionFind sets(kind.faces.size());
   std::vector<std::set<std::uint32_t>> beside(kind.faces.size());  // of a wall: faces of the skin
   for (const auto& [edge, uses] : at_edge) {
-    if (getenv("MESO_DBG3") && (uses.size() != 2 || uses[0].second == uses[1].second)) {
-      const auto& e = geometry_.edges[edge.first]; const Vec3 a0=geometry_.vertices[e.vertex[0]], b0=geometry_.vertices[e.vertex[1]];
-      fprintf(stderr, "edge uses %zu  curve %zu  off %d %d %d  %.9f %.9f %.9f -> %.9f %.9f %.9f", uses.size(), e.curve.index(), edge.second[0], edge.second[1], edge.second[2], a0.x,a0.y,a0.z,b0.x,b0.y,b0.z);
-      for (auto& u : uses) fprintf(stderr, " (%d axis %d surf %zu)", u.second, kind.faces[u.first].axis, geometry_.faces[kind.faces[u.first].face].surface.index());
-      fprintf(stderr, "\n"); continue; }
     if (uses.size() != 2 || uses[0].second == uses[1].second) return false;
     const auto [a, b] = std::pair(uses[0].first, uses[1].first);
     const bool wall_a = kind.faces[a].axis >= 0, wall_b = kind.faces[b].axis >= 0;

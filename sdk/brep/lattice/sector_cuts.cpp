@@ -10,10 +10,10 @@
 namespace meso::brep {
 namespace {
 
-constexpr double near_gap = 0.02;    ///< radians between circles that are to be parted by a cut
-constexpr double longest_cut = 2;    ///< radians
-constexpr double beside_caps = 0.02; ///< radians between a cut and the caps that it passes
-constexpr int points_of_cut = 8;     ///< at which it is looked for these
+constexpr double near_gap = 0.02;     ///< radians between circles that are to be parted by a cut
+constexpr double longest_cut = 2;     ///< radians
+constexpr double beside_caps = 0.02;  ///< radians between a cut and the caps that it passes
+constexpr int points_of_cut = 8;      ///< at which it is looked for these
 
 Vec3 unit(Vec3 v) { return v / norm(v); }
 
@@ -79,7 +79,8 @@ class SectorDivision {
   /// The other end of a link's arc, too.
   [[nodiscard]] std::array<Vec3, 2> ends(const Link& link) const {
     const auto& [a, b] = link.caps;
-    return {towards(caps_[a].axis, caps_[b].axis, caps_[a].angle), towards(caps_[b].axis, caps_[a].axis, caps_[b].angle)};
+    return {towards(caps_[a].axis, caps_[b].axis, caps_[a].angle),
+            towards(caps_[b].axis, caps_[a].axis, caps_[b].angle)};
   }
   [[nodiscard]] bool crosses(const Link& link) const {
     const auto [p, q] = ends(link);

@@ -186,7 +186,6 @@ EdgePolygons mesh_alike(const std::vector<TemplateEdges>& kinds, const Template&
         const TopoDS_Face& face = TopoDS::Face(it.Value());
         if (named_mesh(face, kind, geometry, polygons, fineness)) continue;
         done = false;
-        if (getenv("MESO_DBG5") && round == most_divisions) { fprintf(stderr, "no mesh: surf %d\n", BRepAdaptor_Surface(face).GetType()); for (TopExp_Explorer e(face, TopAbs_EDGE); e.More(); e.Next()) { auto ed=TopoDS::Edge(e.Current()); gp_Pnt a=BRep_Tool::Pnt(TopExp::FirstVertex(ed)), b=BRep_Tool::Pnt(TopExp::LastVertex(ed)); fprintf(stderr, "  %.6f %.6f %.6f -> %.6f %.6f %.6f  n %zu\n", a.X(),a.Y(),a.Z(),b.X(),b.Y(),b.Z(), polygons[kind.match_of(ed).edge].size()); } }
         if (take_points(face, kind, geometry, polygons, taken)) continue;
         for (TopExp_Explorer edge(face, TopAbs_EDGE); edge.More(); edge.Next())
           coarse[kind.match_of(TopoDS::Edge(edge.Current())).edge] = true;

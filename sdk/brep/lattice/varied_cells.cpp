@@ -62,8 +62,8 @@ std::vector<std::uint32_t> VariedBoxes::parts_of(const Index3& box, const std::f
     const Index3 from = box + shift;
     if (!in_pattern(from)) return;
     const Vec3 by{shift[0] * cell_.size().x, shift[1] * cell_.size().y, shift[2] * cell_.size().z};
-    // What a neighbour adds to the cell's own; its struts add nothing to the balls that they end in, which may be larger
-    // than the cell's own about the same centres.
+    // What a neighbour adds to the cell's own; its struts add nothing to the balls that they end in, which may be
+    // larger than the cell's own about the same centres.
     std::vector<CellPrimitive> known = own;
     if (shift != Index3{})
       for (const std::uint32_t solid : cell_.varied->of(from))
