@@ -26,6 +26,18 @@ Vec3 towards(Vec3 axis, Vec3 other, double angle) {
   return std::cos(angle) * axis + std::sin(angle) * unit(other - dot(other, axis) * axis);
 }
 
+/// Circles far apart would need no cuts, but a face between all of them no axis is off.
+std::vector<BallCap> nearly_touching(std::vector<BallCap> caps) {
+  constexpr double apart = 0.05;
+  double least = pi;
+  for (std::size_t j = 0; j < caps.size(); ++j)
+    for (std::size_t i = 0; i < j; ++i)
+      least = std::min(least, angle_between(caps[i].axis, caps[j].axis) - caps[i].angle - caps[j].angle);
+  if (caps.size() > 2 && least > apart)
+    for (BallCap& cap : caps) cap.angle += (least - apart) / 2;
+  return caps;
+}
+
 }  // namespace
 
 BallSectors::BallSectors(const JointedBox& box, CellEdges& edges) : box_(box), edges_(edges) {
@@ -112,7 +124,7 @@ void BallSectors::cut(Ball& ball) {
   std::vector<BallCap> caps;
   for (const Cap& cap : ball.caps) caps.push_back({cap.axis, cap.angle});
   if (std::ranges::none_of(ball.caps, [](const Cap& cap) { return cap.side.has_value(); })) {
-    const BallCuts cuts = cuts_between(caps);
+    const BallCuts cuts = cuts_between(nearly_touching(caps));
     for (const Vec3 p : cuts.points) caps.push_back({p, 0});
     for (const auto& [a, b] : cuts.cuts) cut_between(ball, caps[a], caps[b]);
     return;
@@ -262,17 +274,10 @@ bool BallSectors::add_faces(int variant, std::vector<FaceTemplate>& faces, std::
         auto& uses = face.loops.emplace_back();
         for (const std::size_t a : loops[l]) uses.push_back(ball.arcs[a].use);
       }
-      std::optional<AxisFrame> axes = axes_off(centre(ball), around, variant);
+      const auto axes = axes_off(centre(ball), around, variant);
       if (!axes) {
-        if (members.size() < 2) {
-          why = "a face goes around its ball";
-          return false;
-        }
-        std::vector<SphereLoop> arcs;
-        for (const std::size_t l : members)
-          for (auto& loop = arcs.emplace_back(); const std::size_t a : loops[l]) loop.push_back(ball.arcs[a].value);
-        AxisFrame hint;
-        axes = clear_axes(centre(ball), arcs, hint);
+        why = "a face goes around its ball";
+        return false;
       }
       face.surface = SphereSurface{*axes, radius(ball)};
     }
