@@ -5,6 +5,7 @@
 #include <set>
 
 #include "face_moments.hpp"
+#include "lattice/jointed_box.hpp"
 #include "lattice/jointed_cell.hpp"
 #include "lattice/primitive_field.hpp"
 #include "point_within.hpp"
@@ -447,6 +448,12 @@ std::optional<TopoDS_Shape> solid_in_box(const CellShape& cell, const Reach& rea
     if (auto inside = fused_in_box(solids, primitives, cell, fuzzy, run, fault)) return inside;
   if (!run.should_stop()) sink.report({.code = Code::geometry_not_repeatable, .args = {fault}});
   return {};
+}
+
+bool is_put_together(const CellShape& cell, const Reach& reach, const std::vector<std::uint32_t>& parts) {
+  std::string why;
+  return parts.empty() ||
+         (cell.varied && jointed_box(primitives_in_box(cell, reach, parts), cell.box, cell.tolerance(), why));
 }
 
 TopoDS_Shape solid_in_box_otherwise(const CellShape& cell, const Reach& reach, const std::vector<std::uint32_t>& parts,

@@ -63,6 +63,9 @@ struct Reach {
                                                        const std::vector<std::uint32_t>& parts, const RunOptions& run,
                                                        DiagnosticSink& sink);
 
+/// Takes no boolean: some 50 times faster.
+[[nodiscard]] bool is_put_together(const CellShape& cell, const Reach& reach, const std::vector<std::uint32_t>& parts);
+
 /// The same points between faces with other parameters, 1 and on; null where there is no such way. Only of cells that
 /// vary.
 [[nodiscard]] TopoDS_Shape solid_in_box_otherwise(const CellShape& cell, const Reach& reach,

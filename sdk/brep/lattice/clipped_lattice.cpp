@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lattice/clipped_lattice.hpp"
 
+#include <algorithm>
 #include <deque>
 #include <map>
 
@@ -141,7 +142,8 @@ ClipCounts counts_of(const std::vector<ClippedCell>& results, Vec3 size, Diagnos
   return counts;
 }
 
-constexpr std::size_t most_kinds = 1'000;  ///< each takes half a second to a second
+constexpr std::size_t most_kinds = 20'000;  ///< each takes 20 to 200 milliseconds
+constexpr std::size_t most_fused = 1'000;   ///< half a second to a second
 
 /// Of fewer cells a boolean is sooner done than this many boxes of a body that reaches far beyond them.
 bool is_worth_it(std::size_t distinct, std::uint64_t kept) { return kept > 100 || distinct <= 100 + 8 * kept; }
@@ -172,8 +174,8 @@ class LatticeMaker {
     });
     if (run_.should_stop()) return stopped();
     CellKinds kinds = first_kinds(cells);
-    if (kinds.parts().size() > most_kinds)
-      return fault("more boxes than " + std::to_string(most_kinds) + " are alike with none other");
+    if (const std::size_t most = most_alike_with_none(kinds); kinds.parts().size() > most)
+      return fault("more boxes than " + std::to_string(most) + " are alike with none other");
     auto solids = kind_solids(cell_, reach(), kinds.parts(), run_, sink_);
     if (run_.should_stop()) return stopped();
     if (!solids) return {};
@@ -202,6 +204,14 @@ class LatticeMaker {
               if (!in_body(box)) return std::vector<std::uint32_t>{};
               return varied_->parts_of(box, [&](const Index3& cell) { return cells.in_pattern(cell); });
             }};
+  }
+  /// How many kinds there may be.
+  [[nodiscard]] std::size_t most_alike_with_none(const CellKinds& kinds) const {
+    const auto& parts = kinds.parts();
+    if (parts.size() <= most_fused || parts.size() > most_kinds) return most_kinds;
+    const auto fused =
+        std::ranges::count_if(parts, [&](const auto& of_kind) { return !is_put_together(cell_, reach(), of_kind); });
+    return static_cast<std::size_t>(fused) > most_fused ? most_fused : most_kinds;
   }
   std::nullopt_t fault(std::string what) {
     sink_.report({.code = Code::geometry_not_repeatable, .args = {std::move(what)}});
