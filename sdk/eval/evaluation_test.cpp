@@ -45,6 +45,19 @@ TEST(Parameters, FaultyOverridesAreTold) {
   EXPECT_THAT(faults_of(parameters, {.overrides = {{"pitch", "8"}, {"pitch", "9"}}}), ElementsAre("OVERRIDE_INVALID"));
 }
 
+// what was written as a length stays one; a number without a unit, or a ratio, suits both.
+TEST(Parameters, OverridesKeepToTheUnitsThatAreWritten) {
+  const std::string both =
+      "<parameters><parameter id='pitch' value='5mm'/><parameter id='turn' value='30deg'/></parameters>";
+  const auto faults = [&](Override o) { return faults_of(both, {.overrides = {std::move(o)}}); };
+  EXPECT_THAT(faults({"pitch", "5deg"}), ElementsAre("OVERRIDE_INVALID"));
+  EXPECT_THAT(faults({"turn", "2 + pitch"}), ElementsAre("OVERRIDE_INVALID"));
+  EXPECT_THAT(faults({"pitch", "1mm > 1deg ? 1 : 2"}), ElementsAre("OVERRIDE_INVALID"));
+  EXPECT_EQ(evaluation_of(both, {.overrides = {{"turn", "pitch/10mm"}}}).parameter("turn"), 0.5);
+  EXPECT_EQ(evaluation_of(both, {.overrides = {{"turn", "0.1*pitch"}}}).parameter("turn"), 0.5);
+  EXPECT_EQ(evaluation_of(both, {.overrides = {{"pitch", "8"}}}).parameter("pitch"), 8);
+}
+
 TEST(Parameters, OverrideDiagnosticsQuoteTheOverride) {
   DiagnosticSink sink;
   auto read = read_document(meso_text(parameters), "test.meso", sink);

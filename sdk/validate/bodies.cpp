@@ -181,8 +181,6 @@ void CsgCheck::operator()(const VolumeElementPrimitive& e) {
     if (!position) continue;
     const Axis& axis = system->axes[*position];
     const AxisKind kind = axis.kind;
-    check_axis_unit(c_, range, "from", range.from, &axis);
-    check_axis_unit(c_, range, "to", range.to, &axis);
     if (used[*position]) c_.report(Code::axis_twice, range, "axis", {range.axis.text});
     used[*position] = true;
     if (kind == AxisKind::scalar) c_.report(Code::scalar_axis, range, "axis", {range.axis.text});

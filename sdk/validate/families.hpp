@@ -32,6 +32,9 @@ void check_fields(Context& c);
 void check_patterns(Context& c);
 ///
 void check_parts(Context& c);
+/// written units suit each other and what they are written for. Last: it asks for the kinds
+/// of axes and says nothing about what the other families told.
+void check_dimensions(Context& c);
 
 // Shared by several families.
 
@@ -81,13 +84,6 @@ void check_beams(Context& c, const BeamsBody& body, const Scope& scope);
 [[nodiscard]] std::optional<std::size_t> find_axis(Context& c, const std::vector<Axis>& axes, std::string_view system,
                                                    const Element& element, std::string_view attribute,
                                                    const Name& name);
-
-/// a number with a unit that does not suit what is counted along an axis; null: along a direction.
-void check_axis_unit(Context& c, const Element& element, std::string_view attribute,
-                     const std::optional<Expression>& value, const Axis* axis);
-/// The same of a list whose items belong to the axes in order, all others to the last. REQUIRES: an axis.
-void check_axis_units(Context& c, const Element& element, std::string_view attribute, const ExpressionList& values,
-                      std::span<const Axis> axes);
 
 /// The names under which expressions know the components of a field and what follows from them (without the field's
 /// id).

@@ -48,13 +48,10 @@ class GridCheck {
   GridCheck(Context& c, const std::optional<Ref<CoordinateSystem>>& system)
       : c_(c), system_(system), axes_(axes_of(c, system)) {}
 
-  /// Null if it is none of the system.
-  const Axis* axis(const Element& element, const Name& name) {
-    if (axes_ == nullptr) return nullptr;
+  void axis(const Element& element, const Name& name) {
+    if (axes_ == nullptr) return;
     const auto position = find_axis(c_, *axes_, system_ ? system_->text : "", element, "name", name);
-    if (!position) return nullptr;
-    if (!used_.insert(*position).second) c_.report(Code::axis_twice, element, "name", {name.text});
-    return &(*axes_)[*position];
+    if (position && !used_.insert(*position).second) c_.report(Code::axis_twice, element, "name", {name.text});
   }
 
  private:
@@ -68,14 +65,10 @@ std::int64_t check_grid(Context& c, const RegularGridLocation& grid) {
   GridCheck check(c, grid.coordinate_system);
   std::int64_t points = 1;
   for (const GridAxis& axis : grid.axes) {
-    const Axis* along = check.axis(axis, axis.name);
+    check.axis(axis, axis.name);
     check_count(c, axis, "count", axis.count);
     (void)c.check(axis, "start", axis.start, c.parameters);
     if (c.check(axis, "spacing", axis.spacing, c.parameters)) c.require_positive(axis, "spacing", axis.spacing);
-    if (along != nullptr) {
-      check_axis_unit(c, axis, "start", axis.start, along);
-      check_axis_unit(c, axis, "spacing", axis.spacing, along);
-    }
     points = product(points, std::max<std::int64_t>(axis.count, 0));
   }
   return points;
@@ -85,8 +78,7 @@ std::int64_t check_grid(Context& c, const RectilinearGridLocation& grid) {
   GridCheck check(c, grid.coordinate_system);
   std::int64_t points = 1;
   for (const RectilinearAxis& axis : grid.axes) {
-    const Axis* along = check.axis(axis, axis.name);
-    if (along != nullptr) check_axis_units(c, axis, "at", axis.at, {along, 1});
+    check.axis(axis, axis.name);
     const auto at = c.check(axis, "at", axis.at, c.parameters) ? c.constants(axis.at) : std::nullopt;
     if (at && std::adjacent_find(at->begin(), at->end(), [](double a, double b) { return !(a < b); }) != at->end())
       c.report(Code::field_not_ascending, axis, "at", {axis.name.text});

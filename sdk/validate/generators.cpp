@@ -56,13 +56,6 @@ class GeneratorCheck {
       c_.report(Code::distance_negative, element, attribute, {axis.name.text, format_number(*value)});
   }
   void expressions(const Loop& loop);
-  ///
-  void units(const Loop& loop, const Axis* axis) {
-    check_axis_unit(c_, loop, "start", loop.start, axis);
-    check_axis_unit(c_, loop, "spacing", loop.spacing, axis);
-    check_axis_unit(c_, loop, "position", loop.position, axis);
-    check_axis_unit(c_, loop, "size", loop.size, axis);
-  }
 
   Context& c_;
   const Pattern& pattern_;
@@ -118,11 +111,9 @@ void GeneratorCheck::operator()(const Loop& loop) {
     c_.report(Code::attribute_ineffective, loop, "size", {"size", "along a direction: it is a function of an axis"});
   else if (loop.start && loop.position)
     c_.report(Code::attribute_ineffective, loop, "start", {"start", "beside position"});
-  if (!loop.axis) return units(loop, nullptr);
+  if (!loop.axis) return;
   const Axis* found = axis(loop, *loop.axis);
-  if (found == nullptr) return;
-  units(loop, found);
-  if (loop.start) distance(loop, "start", *found, c_.constant(*loop.start));
+  if (found != nullptr && loop.start) distance(loop, "start", *found, c_.constant(*loop.start));
 }
 
 void GeneratorCheck::operator()(const Scatter& scatter) {
@@ -152,8 +143,6 @@ void GeneratorCheck::operator()(const PlacementList& list) {
     if (count > axes_->size())
       c_.report(Code::expression_list_count, place, "at",
                 {"1 to " + std::to_string(axes_->size()), std::to_string(count)});
-    else
-      check_axis_units(c_, place, "at", place.at, *axes_);
     const auto values = c_.constants(place.at);
     for (std::size_t i = 0; values && i < std::min(count, axes_->size()); ++i)
       distance(place, "at", (*axes_)[i], (*values)[i]);
@@ -168,9 +157,6 @@ void GeneratorCheck::operator()(const Fill& fill) {
     c_.require_positive(range, "step", range.step);
     const Axis* found = axis(range, range.axis);
     if (found == nullptr) continue;
-    check_axis_unit(c_, range, "from", range.from, found);
-    check_axis_unit(c_, range, "to", range.to, found);
-    check_axis_unit(c_, range, "step", range.step, found);
     distance(range, "from", *found, c_.constant(range.from));
   }
 }

@@ -107,6 +107,39 @@ TEST(Expressions, NameTheOperationWithoutValue) {
   EXPECT_THAT(told[0].args, ElementsAre("sqrt(0 - 4)"));
 }
 
+TEST(Dimensions, SayWhichTwoDoNotMeet) {
+  const auto told = faults(parameters(R"-(<parameter id="a" value="1 + (5mm - 3deg)"/>)-"));
+  ASSERT_THAT(told, SizeIs(1));
+  EXPECT_EQ(told[0].code, Code::expression_units);
+  EXPECT_THAT(told[0].args, ElementsAre("5mm", "a length", "3deg", "an angle"));
+}
+
+TEST(Dimensions, SayWhatIsAskedFor) {
+  const auto told = faults(parameters(R"(<parameter id="t" value="4deg"/>)") +
+                           R"(<macrostructures><macrostructure id="m"><csg><sphere radius=" t + 1 "/></csg>)"
+                           R"(</macrostructure></macrostructures>)");
+  ASSERT_THAT(told, SizeIs(1));
+  EXPECT_EQ(message(told[0]), "'t + 1' is an angle, and radius is a length");
+  EXPECT_EQ(told[0].where.length, 5u);
+}
+
+// R-5.1.10: a text without a tree has no dimension, and a broken link no axis.
+TEST(Dimensions, SayNothingOfWhatWasTold) {
+  EXPECT_THAT(faults(parameters(R"(<parameter id="a" value="5mm + "/><parameter id="b" value="a + 3deg"/>)")),
+              SizeIs(1));
+}
+
+TEST(Dimensions, OfThousandsOfParametersStayCheap) {
+  std::string items, cells;
+  for (int i = 0; i < 5'000; ++i) {
+    items += "<parameter id=\"p" + std::to_string(i) + "\" value=\"1mm\"/>";
+    cells += "<unitCell id=\"u" + std::to_string(i) + "\"><csg><sphere radius=\"p0\"/></csg></unitCell>";
+  }
+  const auto begin = std::chrono::steady_clock::now();
+  EXPECT_THAT(faults(parameters(items) + "<unitCells>" + cells + "</unitCells>"), IsEmpty());
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(5));
+}
+
 TEST(Validate, ThousandsOfFaultsStayCheap) {
   std::string items;
   for (int i = 0; i < 20'000; ++i)

@@ -23,6 +23,7 @@ std::optional<CheckedDocument> Validator::run(Document document, SourceMap sourc
   check_fields(c);
   check_patterns(c);
   check_parts(c);
+  check_dimensions(c);
   if (sink.error_count() != errors_before) return std::nullopt;
   return CheckedDocument(std::make_shared<const Document>(std::move(document)),
                          std::make_shared<const SourceMap>(std::move(source)), std::move(resources));

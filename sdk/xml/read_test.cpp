@@ -55,6 +55,13 @@ TEST(Read, ReportsIndependentFaultsInTheOrderOfTheFile) {
   EXPECT_EQ(o.diagnostics[3].code, Code::attribute_unknown);
 }
 
+TEST(Read, KnowsUnitsThatAreWrittenShort) {
+  const Outcome o = read("<meso xmlns=\"urn:meso-format:1.0\" version=\"1.0\" unit=\"mm\"/>");
+  ASSERT_EQ(o.diagnostics.size(), 1U) << all_of(o.diagnostics);
+  EXPECT_EQ(o.diagnostics[0].code, Code::value_choice);
+  EXPECT_EQ(o.diagnostics[0].args[3], "; did you mean 'millimeter'?");
+}
+
 TEST(Read, GivesPathsOfMergedSections) {
   const Outcome o = read(in_meso("<parts><part id=\"a\"/></parts><parts><part id=\"b\"/></parts>"));
   ASSERT_TRUE(o.result);

@@ -2,6 +2,8 @@
 #include "value_text.hpp"
 
 #include <algorithm>
+#include <array>
+#include <utility>
 
 #include "meso/expr/nearest.hpp"
 
@@ -32,6 +34,18 @@ bool is_decimal(std::string_view text) {
     if (digits() == 0) return false;
   }
   return i == text.size();
+}
+
+/// Units are written short in expressions and out as attributes: empty if `text` is none, or none of the choices.
+std::string_view written_out(std::string_view text, const std::vector<std::string_view>& choices) {
+  static constexpr auto units = std::to_array<std::pair<std::string_view, std::string_view>>({{"um", "micrometer"},
+                                                                                              {"mm", "millimeter"},
+                                                                                              {"cm", "centimeter"},
+                                                                                              {"m", "meter"},
+                                                                                              {"in", "inch"},
+                                                                                              {"ft", "foot"}});
+  const auto unit = std::ranges::find(units, text, [](const auto& pair) { return pair.first; });
+  return unit != units.end() && std::ranges::find(choices, unit->second) != choices.end() ? unit->second : "";
 }
 
 }  // namespace
@@ -79,7 +93,8 @@ std::optional<ValueFault> choice_fault(std::string_view attribute, std::string_v
                                        const std::vector<std::string_view>& choices) {
   std::string list;
   for (const std::string_view c : choices) list += (list.empty() ? "" : ", ") + std::string(c);
-  const std::string_view meant = expr::nearest(text, choices);
+  const std::string_view near = expr::nearest(text, choices);
+  const std::string_view meant = near.empty() ? written_out(text, choices) : near;
   return ValueFault{Code::value_choice,
                     {std::string(text), std::string(attribute), list,
                      meant.empty() ? "" : "; did you mean '" + std::string(meant) + "'?"}};

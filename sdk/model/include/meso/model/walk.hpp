@@ -3,6 +3,8 @@
 // Visits every attribute of an element and of all elements below it, in the order of the describe table.
 //
 //   walk(part, [](const Element& owner, std::string_view name, const auto& value) { ... });
+//
+// The owner has the type of its element: `const auto& owner` knows which one it is.
 
 #include <optional>
 #include <string_view>
@@ -13,10 +15,10 @@
 
 namespace meso {
 
-template <class F>
+template <class Owner, class F>
 class Walk {
  public:
-  Walk(const Element& element, F& on) : element_(element), on_(on) {}
+  Walk(const Owner& element, F& on) : element_(element), on_(on) {}
 
   template <class T>
   void attribute(std::string_view name, const T& value) {
@@ -58,11 +60,11 @@ class Walk {
   template <class E>
   requires std::is_base_of_v<Element, E>
   void visit(const E& e) {
-    Walk inner(e, on_);
+    Walk<E, F> inner(e, on_);
     describe(inner, e);
   }
 
-  const Element& element_;
+  const Owner& element_;
   F& on_;
 };
 
