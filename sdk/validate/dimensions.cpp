@@ -16,6 +16,14 @@ namespace {
 
 using expr::Dimension;
 
+/// What is asked for, and how it is written.
+std::string wish(Dimension dimension) {
+  const std::string what(expr::to_text(dimension));
+  if (dimension == Dimension::length) return what + "; write mm, cm, m, um, in or ft";
+  if (dimension == Dimension::angle) return what + "; write deg or rad";
+  return what + "; write it without a unit";
+}
+
 /// What names are, in layers: the document's parameters, the cell's, the pattern's indices. All others are open.
 struct Dimensions {
   const Dimensions* outer = nullptr;  ///< outlives this one
@@ -160,11 +168,11 @@ Dimension DimensionWalk<Tell>::check(const Element& owner, std::string_view attr
   if (!wanted.refuses(found)) return found;
   const std::size_t begin = text.find_first_not_of(" \t\r\n");
   const std::string_view whole = text.substr(begin, text.find_last_not_of(" \t\r\n") + 1 - begin);
-  const std::string wish = wanted.code == Code::axis_unit
-                               ? (wanted.dimension == Dimension::angle ? "angles" : "lengths")
-                               : std::string(expr::to_text(wanted.dimension));
+  const std::string asked = wanted.code != Code::axis_unit         ? wish(wanted.dimension)
+                            : wanted.dimension == Dimension::angle ? "angles"
+                                                                   : "lengths";
   tell_(wanted.code, owner, attribute,
-        std::vector<std::string>{std::string(whole), std::string(expr::to_text(found)), wanted.what, wish},
+        std::vector<std::string>{std::string(whole), std::string(expr::to_text(found)), wanted.what, asked},
         offset + begin, whole.size());
   return Dimension::open;
 }
@@ -273,8 +281,7 @@ class DimensionCheck {
       if (suits) continue;
       const Dimension other = found == Dimension::angle ? Dimension::length : Dimension::angle;
       c_.report(Code::value_unit, p, "value",
-                {p.value.text, std::string(expr::to_text(found)), "the parameter '" + p.name.text + "'",
-                 std::string(expr::to_text(other))});
+                {p.value.text, std::string(expr::to_text(found)), "the parameter '" + p.name.text + "'", wish(other)});
     }
   }
 

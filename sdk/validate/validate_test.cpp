@@ -119,7 +119,7 @@ TEST(Dimensions, SayWhatIsAskedFor) {
                            R"(<macrostructures><macrostructure id="m"><csg><sphere radius=" t + 1 "/></csg>)"
                            R"(</macrostructure></macrostructures>)");
   ASSERT_THAT(told, SizeIs(1));
-  EXPECT_EQ(message(told[0]), "'t + 1' is an angle, and radius is a length");
+  EXPECT_EQ(message(told[0]), "'t + 1' is an angle, and radius is a length; write mm, cm, m, um, in or ft");
   EXPECT_EQ(told[0].where.length, 5u);
 }
 
