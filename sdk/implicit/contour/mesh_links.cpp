@@ -41,16 +41,34 @@ bool MeshLinks::stays_manifold(std::uint32_t a, std::uint32_t b) {
   return at_edge == 2;
 }
 
+// Points that took in many others would be asked for all triangles that they ever had.
+void MeshLinks::unlink_gone(std::uint32_t point) {
+  std::uint32_t last = none;
+  for (std::uint32_t c = head_[point]; c != none; c = next_[c]) {
+    if (!has_triangle(c / 3)) continue;
+    (last == none ? head_[point] : next_[last]) = c;
+    last = c;
+  }
+  (last == none ? head_[point] : next_[last]) = none;
+  tail_[point] = last;
+}
+
 void MeshLinks::collapse(std::uint32_t from, std::uint32_t onto) {
+  common_.clear();  // the corners opposite to the edge
   visit_triangles(from, [&](std::uint32_t t) {
-    if (is_corner(t, onto))
+    if (is_corner(t, onto)) {
+      for (const std::uint32_t p : triangles_[t])
+        if (p != from && p != onto) common_.push_back(p);
       triangles_[t][0] = none;
-    else
+    } else {
       std::replace(triangles_[t].begin(), triangles_[t].end(), from, onto);
+    }
   });
   next_[tail_[onto]] = head_[from];
   tail_[onto] = tail_[from];
   head_[from] = none;
+  unlink_gone(onto);
+  for (const std::uint32_t p : common_) unlink_gone(p);
 }
 
 void MeshLinks::compact() {

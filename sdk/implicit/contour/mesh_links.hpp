@@ -39,6 +39,8 @@ class MeshLinks {
   void compact();
 
  private:
+  void unlink_gone(std::uint32_t point);
+
   static constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
 
   std::vector<Vec3>& points_;
