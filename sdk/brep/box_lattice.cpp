@@ -8,17 +8,21 @@ namespace {
 
 constexpr std::int64_t most_boxes = 1'000'000;  ///< along an axis
 
+constexpr double least_step = 0.3;  ///< of a box's edge: where beams stand closer, too many share a place
+
 bool is_rigid(const Affine& map) { return is_similarity(map) && std::fabs(determinant(map.linear) - 1) < 1e-12; }
 
-/// The box axis that `step` runs along, exactly one box long; -1 if there is none.
-int axis_of(Vec3 step, Vec3 size) {
+/// The box axis that `step` runs along, up it; -1 if there is none.
+int axis_of(Vec3 step) {
   for (std::size_t a = 0; a < 3; ++a) {
-    Vec3 expected;
-    expected[a] = size[a];
-    if (norm(step - expected) <= 1e-9 * size[a]) return static_cast<int>(a);
+    Vec3 along;
+    along[a] = step[a];
+    if (step[a] > 0 && norm(step - along) <= 1e-9 * step[a]) return static_cast<int>(a);
   }
   return -1;
 }
+
+bool is_as_long(double step, double edge) { return std::fabs(step - edge) <= 1e-9 * edge; }
 
 /// The boxes of the pattern's own cells.
 std::optional<BoxLattice> own_boxes(const eval::CellStream& cells, bool may_vary, DiagnosticSink& sink) {
@@ -34,14 +38,23 @@ std::optional<BoxLattice> own_boxes(const eval::CellStream& cells, bool may_vary
                  .shape = std::move(first->shape),
                  .cut = cells.unit_cell().clip_to_box.value_or(false),
                  .varies = varies};
+  // Beams that stand closer than their boxes, or farther apart, reach out of boxes as long as the steps.
+  const bool may_fit = !varies && !out.cut && std::holds_alternative<BeamsBody>(cells.unit_cell().body);
   const Mat3 columns = transposed(steps->world_from_first.linear) * steps->lattice;
   std::array<bool, 3> used{};
   for (std::size_t loop = 0; loop < 3; ++loop) {
-    if (steps->count[loop] == 1) continue;
-    const int axis = axis_of(columns.column(loop), out.box.size);
-    if (axis < 0 || used[static_cast<std::size_t>(axis)] || steps->count[loop] > most_boxes) return {};
-    used[static_cast<std::size_t>(axis)] = true;
-    out.count[static_cast<std::size_t>(axis)] = static_cast<std::int32_t>(steps->count[loop]);
+    const Vec3 step = columns.column(loop);
+    if (steps->count[loop] == 1 || (!varies && step == Vec3{})) continue;
+    const int found = axis_of(step);
+    if (found < 0 || steps->count[loop] > most_boxes) return {};
+    const auto axis = static_cast<std::size_t>(found);
+    if (used[axis]) return {};
+    used[axis] = true;
+    out.count[axis] = static_cast<std::int32_t>(steps->count[loop]);
+    if (is_as_long(step[axis], out.box.size[axis])) continue;
+    if (!may_fit || step[axis] < least_step * out.box.size[axis]) return {};
+    out.box.size[axis] = step[axis];
+    out.is_fitted = true;
   }
   return out;
 }
@@ -59,7 +72,7 @@ std::optional<BoxLattice> smaller_boxes(const BoxLattice& outer, const SolidCont
   const eval::CellStream* cells =
       of_part != nullptr && context.parts != nullptr ? context.parts->only_cells_of(*of_part->part) : nullptr;
   auto inner = cells != nullptr ? own_boxes(*cells, false, context.sink) : std::nullopt;
-  if (!inner || !is_unturned(inner->world_from_cell)) return {};
+  if (!inner || inner->is_fitted || !is_unturned(inner->world_from_cell)) return {};
   inner->is_cut_by_cells = outer.is_cut_by_cells || (outer.cut && !inner->cut);
   inner->cut = inner->cut || outer.cut;
   const Vec3 low = inner->world_from_cell.translation + inner->box.corner - outer.box.corner;

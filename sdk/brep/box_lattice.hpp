@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Patterns whose cell boxes stand side by side. A cell whose part is itself such a pattern, and fills the cell's box,
+// Patterns whose cell boxes stand side by side, or whose beams do. A cell whose part is itself such a pattern, and fills the cell's box,
 // is that pattern continued: hierarchy of any depth is then one lattice of the smallest boxes. Private.
 
 #include <array>
@@ -21,6 +21,7 @@ struct BoxLattice {
   eval::Shape shape;             ///< of what belongs to one box, in its own coordinates
   bool cut = false;              ///< to the box
   bool is_cut_by_cells = false;  ///< and that only where a cell of the pattern ends
+  bool is_fitted = false;        ///< boxes are as long as the steps, which are not the edges of the cells' boxes
   bool varies = false;           ///< struts differ from cell to cell; `shape` is the first's
 
   [[nodiscard]] bool is_refined() const { return block != Index3{1, 1, 1}; }

@@ -236,7 +236,7 @@ std::optional<Found> find_lattice(const LatticeRequest& request, const eval::Cel
       !request.whole_cells && (cells.unit_cell().clip_to_box.value_or(false) || !request.clip.empty() ||
                                !request.removed.empty() || !request.added.empty());
   const auto lattice = box_lattice(cells, may_refine, may_vary, context);
-  if (!lattice) return {};
+  if (!lattice || (lattice->is_fitted && request.whole_cells)) return {};
   const auto from_world = [&](Solids solids) {
     for (TopoDS_Shape& solid : solids) solid = mapped(solid, inverse(lattice->world_from_cell));
     return solids;

@@ -58,7 +58,6 @@ std::optional<CellStream::Lattice> CellStream::lattice_of_places() const {
     if (steps > 0) {
       if (!position_of(steps * ordinal_step, last)) return std::nullopt;
       columns[k] = (last.translation - origin) / static_cast<double>(steps);
-      if (norm(columns[k]) == 0) return std::nullopt;
     }
     ordinal_step *= static_cast<std::uint64_t>(counts[k]);
   }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "meso/eval/cell_fit.hpp"
 #include "meso/operations/macrostructure_distance.hpp"
 #include "meso/package/open_document.hpp"
 #include "stopwatch.hpp"
@@ -81,6 +82,7 @@ std::optional<Prepared> prepare(const fs::path& document, const MakeOptions& opt
                                             .distance = macrostructure_distance(options.overrides, options.run)},
                                            sink);
   if (!evaluation) return std::nullopt;
+  eval::warn_of_misfits(*evaluation, sink);
   const auto fineness = mesh_fineness(*evaluation, options, sink);
   if (!fineness) return std::nullopt;
   return Prepared{.evaluation = std::move(*evaluation),

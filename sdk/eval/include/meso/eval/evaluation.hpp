@@ -90,7 +90,7 @@ class CellStream {
   [[nodiscard]] const Pattern& pattern() const;
   [[nodiscard]] const UnitCell& unit_cell() const;
   /// If all cells are translates of one lattice with equal parameters and without `when`: cell (i,j,k) = origin +
-  /// lattice * (i,j,k).
+  /// lattice * (i,j,k). A step may be 0.
   struct Lattice {
     Affine world_from_first;  ///< of cell (0, 0, 0)
     Mat3 lattice;             ///< columns: steps along the three indices, millimetres
