@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Patterns whose cell boxes stand side by side, or whose beams do. A cell whose part is itself such a pattern, and fills the cell's box,
-// is that pattern continued: hierarchy of any depth is then one lattice of the smallest boxes. Private.
+// Patterns whose cell boxes stand side by side, or whose beams do. A cell whose part is itself such a pattern, and
+// fills the cell's box, is that pattern continued: hierarchy of any depth is then one lattice of the smallest boxes.
+// Private.
 
 #include <array>
 #include <optional>
