@@ -5,6 +5,7 @@
 #include <set>
 
 #include "boolean.hpp"
+#include "meso/brep/measure.hpp"
 #include "realise_boundary.hpp"
 
 namespace meso::brep {
@@ -100,7 +101,7 @@ class Joining {
     request.mesh = mesh;
     request.pieces = now ? PiecesAsked::of_both : asks_first ? PiecesAsked::of_cut : PiecesAsked::none;
     auto part = lattice_part(request, cells_, context_.solid);
-    if (!part || part->kept == 0) return {};
+    if (!part || part->kept == 0 || !holds_what_was_added(part->body)) return {};
     if (now) fragments_ += fragments_of(*part->joined, now->at);
     if (!now && asks_first) fragments_ += fragments_of(*part->cut, owner_in_before());
     return JoinedLattice{std::move(*part), fragments_};
@@ -108,6 +109,14 @@ class Joining {
 
  private:
   [[nodiscard]] bool is_cut() const { return pattern_.operation == ApplyOperation::intersection; }
+  /// No union is smaller than one of its operands.
+  [[nodiscard]] bool holds_what_was_added(const Body& body) const {
+    double least = 0;
+    for (const TopoDS_Shape& solid : bodies_.added) least += volume_of(solid);
+    if (measure(body).volume >= least * (1 - 1e-6)) return true;
+    context_.solid.sink.report({.code = Code::geometry_not_repeatable, .args = {"a piece of the body is lost"}});
+    return false;
+  }
   [[nodiscard]] std::optional<LatticePart> pieces() const {
     LatticeRequest request = bodies_.request();
     request.pieces = PiecesAsked::of_both_and_no_body;

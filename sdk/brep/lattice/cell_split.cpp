@@ -111,7 +111,11 @@ std::vector<Vec3> CellSplit::points_on(const std::vector<std::uint32_t>& set, bo
     const Piece& piece = faces_.pieces[p];
     if (of_cell && piece.whole) {
       const auto& triangles = cell_.faces[piece.of].triangles;
-      for (std::size_t t = 0; t < triangles.size(); t += 1 + triangles.size() / 8) points.push_back(triangles[t][0]);
+      for (std::size_t t = 0; t < triangles.size(); t += 1 + triangles.size() / 8) {
+        const auto& [a, b, c] = triangles[t];
+        points.push_back(a);
+        points.push_back((a + b + c) / 3);  // of walls, corners would tell of the rim alone
+      }
       continue;
     }
     int taken = 0;
@@ -213,6 +217,10 @@ const char* CellSplit::place_caps() {
       return best.contradicts(in, [&](Vec3 p) { return cell_.probe.contains(p); });
     };
     if (reaches_out) {
+      // Edges may all run close to walls.
+      for (std::size_t i = 0; i < set.size() && best.clear.empty(); ++i)
+        if (const auto middle = middle_of(faces_.pieces[set[i]]); middle && !beyond(*middle))
+          best.look_at(*middle, triangles);
       if (contradicted(false)) return "a face of the body in a cell is on both sides of it";
       continue;
     }
