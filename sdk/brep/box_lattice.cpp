@@ -44,7 +44,7 @@ std::optional<BoxLattice> own_boxes(const eval::CellStream& cells, bool may_vary
   std::array<bool, 3> used{};
   for (std::size_t loop = 0; loop < 3; ++loop) {
     const Vec3 step = columns.column(loop);
-    if (steps->count[loop] == 1 || (!varies && step == Vec3{})) continue;
+    if (steps->count[loop] == 1) continue;
     const int found = axis_of(step);
     if (found < 0 || steps->count[loop] > most_boxes) return {};
     const auto axis = static_cast<std::size_t>(found);

@@ -60,8 +60,6 @@ TEST_F(RealiseVaried, BeamsThatStandCloserThanTheirBoxesOrFartherApart) {
   // Pillars from 0 to 4 and from 5 to 9, cut at 7; then from 0 to 7, beside each other 3 mm apart.
   expect_body(realised(block("1", "6") + spaced("4", "5")), "lattice", 3 * 5 * pi * 0.25);
   expect_body(realised(block("0", "7") + spaced("3", "3")), "lattice", 3 * 7 * pi * 0.25);
-  // All at one place.
-  expect_body(realised(block("1", "6") + spaced("0", "4")), "lattice", 6 * pi * 0.25);
 }
 
 }  // namespace

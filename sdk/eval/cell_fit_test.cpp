@@ -57,6 +57,12 @@ TEST(CellFit, OneWordForThreeMisfits) {
   EXPECT_EQ(told_of(two("0", "4")).codes, Codes{Code::cells_coincide});
 }
 
+TEST(CellFit, CellsThatCoincideAreNoLatticeOfEqualCells) {
+  const CellStream cells = stream_of(evaluation_of(pattern_text(two("0", "4"))));
+  EXPECT_FALSE(cells.lattice());
+  EXPECT_TRUE(cells.lattice_of_places());
+}
+
 TEST(CellFit, GapsThatMayBeMeant) {
   EXPECT_EQ(told_of(two("8", "4"), beam, "difference").codes, Codes{});
   EXPECT_EQ(told_of(two("8", "4"), beam, "union", "<pattern id='q' unitCell='u'>" + two("8", "4") + "</pattern>").codes,

@@ -32,7 +32,11 @@ bool has_equal_cells(const PatternProgram& program) {
 }  // namespace
 
 std::optional<CellStream::Lattice> CellStream::lattice() const {
-  return has_equal_cells(*impl_->program) ? lattice_of_places() : std::nullopt;
+  auto lattice = has_equal_cells(*impl_->program) ? lattice_of_places() : std::nullopt;
+  // Cells that coincide are each a cell, and counted.
+  for (std::size_t k = 0; lattice && k < 3; ++k)
+    if (lattice->count[k] > 1 && lattice->lattice.column(k) == Vec3{}) lattice.reset();
+  return lattice;
 }
 
 std::optional<CellStream::Lattice> CellStream::lattice_of_places() const {
