@@ -2,8 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Makes the C++ enum, its table and the reference page from schema/diagnostics.json.
 
-usage: generate_diagnostics.py hpp|cpp|md  (writes to standard output)
-       generate_diagnostics.py check       (fails if docs/diagnostics.md is stale or the registry breaks a rule)
+usage: generate_diagnostics.py md           (writes to standard output)
+       generate_diagnostics.py code FOLDER  (writes codes.cpp and include/meso/base/codes.hpp there, where they differ)
+       generate_diagnostics.py check        (fails if docs/diagnostics.md is stale or the registry breaks a rule)
 """
 import json
 import pathlib
@@ -34,22 +35,24 @@ def load():
     return codes, blocks
 
 
-def hpp(codes, _):
+def hpp(codes):
     out = ["// Generated from schema/diagnostics.json; do not edit.", "#pragma once", "", "namespace meso {", "", "enum class Code {"]
     out += [f"  {c['name'].lower()} = {c['number']}," for c in codes]
     out += ["};", "", "}  // namespace meso", ""]
     return "\n".join(out)
 
 
-def cpp(codes, _):
-    out = ["// Generated from schema/diagnostics.json; do not edit.", '#include "meso/base/diagnostic.hpp"', "",
-           "namespace meso {", "", "const CodeInfo& info(Code code) {", "  switch (code) {"]
+def cpp(codes):
+    out = ["// Generated from schema/diagnostics.json; do not edit.", '#include "meso/base/diagnostic.hpp"',
+           '#include "meso/base/help.hpp"', "", "namespace meso {", "", "const CodeInfo& info(Code code) {", "  switch (code) {"]
     for c in codes:
         out += [f"    case Code::{c['name'].lower()}: {{",
                 f"      static constexpr CodeInfo i{{{json.dumps(c['name'])}, {c['number']}, Severity::{c['severity']}, {c['exit']},",
                 f"                                  {json.dumps(c['message'], ensure_ascii=False)}}};", "      return i;", "    }"]
     out += ["  }", '  static constexpr CodeInfo unknown{"UNKNOWN", 0, Severity::error, 70, "unknown diagnostic"};', "  return unknown;",
-            "}", "", "}  // namespace meso", ""]
+            "}", "", "std::string_view help(Code code) {", "  switch (code) {"]
+    out += [f"    case Code::{c['name'].lower()}: return {json.dumps(c['help'], ensure_ascii=False)};" for c in codes]
+    out += ["  }", '  return "";', "}", "", "}  // namespace meso", ""]
     return "\n".join(out)
 
 
@@ -67,15 +70,25 @@ def md(codes, blocks):
     return "\n".join(out)
 
 
+def write(file, text):
+    """Leaves a file that says so already as old as it is: what includes it need not be built again."""
+    if not file.exists() or file.read_text(encoding="utf-8") != text:
+        file.write_text(text, encoding="utf-8")
+
+
 def main():
     codes, blocks = load()
-    task = sys.argv[1] if len(sys.argv) == 2 else ""
-    if task == "check":
+    task = sys.argv[1] if len(sys.argv) in (2, 3) else ""
+    if task == "code" and len(sys.argv) == 3:
+        folder = pathlib.Path(sys.argv[2])
+        write(folder / "include/meso/base/codes.hpp", hpp(codes))
+        write(folder / "codes.cpp", cpp(codes))
+    elif task == "check":
         if not PAGE.exists() or PAGE.read_text(encoding="utf-8") != md(codes, blocks):
             sys.exit("docs/diagnostics.md is stale: run scripts/generate_diagnostics.py md > docs/diagnostics.md")
         print(f"{len(codes)} codes, page is fresh")
-    elif task in ("hpp", "cpp", "md"):
-        sys.stdout.write({"hpp": hpp, "cpp": cpp, "md": md}[task](codes, blocks))
+    elif task == "md":
+        sys.stdout.write(md(codes, blocks))
     else:
         sys.exit(__doc__)
 

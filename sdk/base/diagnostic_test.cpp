@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include "meso/base/help.hpp"
+
 namespace meso {
 namespace {
 
@@ -16,6 +18,11 @@ TEST(Diagnostic, RendersPlaceCodeAndArguments) {
 TEST(Diagnostic, NamesThePathWhereNoTextExists) {
   const Diagnostic d{.code = Code::internal, .path = "/meso/parts/part[1]", .args = {"x"}};
   EXPECT_EQ(render(d), "/meso/parts/part[1]: error INTERNAL: internal error: x");
+}
+
+TEST(Diagnostic, HasAdviceForWhoeverShowsIt) {
+  EXPECT_EQ(help(Code::xml_text_outside_root), "Remove it.");
+  EXPECT_NE(help(Code::geometry_empty), help(Code::geometry_boolean));
 }
 
 TEST(DiagnosticSink, CountsErrorsBeyondItsLimit) {

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "meso/base/help.hpp"
 #include "meso/base/number.hpp"
 #include "meso/expr/expression.hpp"
 #include "meso/package/open_document.hpp"
@@ -39,6 +40,7 @@ Json span_json(const Diagnostic& d) {
   out["path"] = d.path;
   out["args"] = d.args;
   out["message"] = message(d);
+  out["help"] = help(d.code);
   return out;
 }
 
@@ -111,7 +113,12 @@ RunOptions Run::options() {
   }
   out.cancelled = stop_requested;
   progress_.emplace(progress_style(flags.progress));
-  out.progress = [this](std::string_view stage, double fraction) { progress_->show(stage, fraction); };
+  out.progress = [this](std::string_view stage, double fraction) {
+    // A warning helps most before the minutes that it is about; other threads may be told of progress while this one
+    // adds to the sink.
+    if (std::this_thread::get_id() == owner_) print_diagnostics(Told::what_is_no_error);
+    progress_->show(stage, fraction);
+  };
   options_ = out;
   return out;
 }
@@ -126,10 +133,18 @@ std::optional<CheckedDocument> Run::open(const std::string& file) {
   return open_checked_document(file, options_.value_or(RunOptions{}), sink);
 }
 
-void Run::print_diagnostics() {
-  if (progress_) progress_->clear();
-  for (const Diagnostic& d : sink.diagnostics()) fmt::print(stderr, "{}\n", render(d));
-  if (sink.truncated()) fmt::print(stderr, "... and more: {} errors in all\n", sink.error_count());
+void Run::print_diagnostics(Told what) {
+  const auto& all = sink.diagnostics();
+  const bool is_over = what == Told::all;
+  const auto may_be_told = [&](const Diagnostic& d) { return is_over || severity(d) != Severity::error; };
+  if (progress_ && (is_over || (printed_ < all.size() && may_be_told(all[printed_])))) progress_->clear();
+  for (; printed_ < all.size() && may_be_told(all[printed_]); ++printed_) {
+    const Diagnostic& d = all[printed_];
+    fmt::print(stderr, "{}\n", render(d));
+    if (severity(d) != Severity::info && helped_.insert(d.code).second)
+      fmt::print(stderr, "  help: {}\n", help(d.code));
+  }
+  if (is_over && sink.truncated()) fmt::print(stderr, "... and more: {} errors in all\n", sink.error_count());
 }
 
 const Diagnostic* Run::first_error() const {
@@ -142,7 +157,7 @@ const Diagnostic* Run::first_error() const {
 int Run::finish() {
   (void)claim_answer();
   explain_stop();
-  print_diagnostics();
+  print_diagnostics(Told::all);
   const Diagnostic* error = first_error();
   return error == nullptr ? 0 : info(error->code).exit_code;
 }
@@ -151,6 +166,7 @@ int Run::finish() {
 void Run::explain_stop() {
   if (!memory_ran_out() || first_error() == nullptr) return;
   sink = DiagnosticSink();
+  printed_ = 0;
   sink.report({.code = Code::limit_memory, .args = {flags.max_memory}});
 }
 

@@ -6,7 +6,9 @@
 #include <initializer_list>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <set>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "meso/base/diagnostic.hpp"
@@ -82,11 +84,16 @@ class Run {
   [[nodiscard]] std::optional<double> angle_rad(const std::string& text, const char* flag);
 
  private:
+  /// While work goes on, an error is kept: what it comes from may be known at the end.
+  enum class Told { what_is_no_error, all };
   [[nodiscard]] const Diagnostic* first_error() const;
-  void print_diagnostics();
+  void print_diagnostics(Told what);
   void explain_stop();
   [[nodiscard]] std::optional<double> positive_value(const std::string& text, LengthUnit unit, const char* flag);
   std::optional<Progress> progress_;
+  std::size_t printed_ = 0;  ///< of the sink's diagnostics
+  std::set<Code> helped_;    ///< whose help is printed
+  std::thread::id owner_ = std::this_thread::get_id();
   std::optional<RunOptions> options_;
 };
 

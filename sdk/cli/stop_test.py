@@ -171,6 +171,18 @@ class Stopping(unittest.TestCase):
                 self.assertEqual(job.returncode, 130, told)
                 self.assert_nothing_left()
 
+    @unittest.skipUnless("convert" in VERBS, "this build does not convert")
+    def test_a_warning_is_told_before_the_work_is_stopped(self):
+        text = DOCUMENT.format(macrostructure=box(90, 90, 90), cell=struts(), loops=loops(20, 20, 20), operation="intersection")
+        (self.documents / "overlap.meso").write_text(text.replace('spacing="5"', 'spacing="4.6"'))
+        job = self.start("convert {d}/overlap.meso {o}/a.step", text=True, bufsize=1)
+        self.addCleanup(job.communicate)
+        told = job.stderr.readline()
+        self.assertIn("warning CELLS_OVERLAP", told)
+        self.assertIn("help: Write the cell's edge as spacing", job.stderr.readline())
+        self.assertIsNone(job.poll(), "it ended too early")
+        job.send_signal(signal.SIGTERM)
+
     def test_a_link_to_a_file_elsewhere(self):
         elsewhere = self.root / "elsewhere"
         elsewhere.mkdir()

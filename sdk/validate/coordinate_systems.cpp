@@ -122,13 +122,12 @@ std::optional<std::size_t> find_axis(Context& c, const std::vector<Axis>& axes, 
                                      const Element& element, std::string_view attribute, const Name& name) {
   const auto found = std::find_if(axes.begin(), axes.end(), [&](const Axis& a) { return a.name == name; });
   if (found != axes.end()) return static_cast<std::size_t>(found - axes.begin());
-  std::vector<std::string_view> candidates;
-  candidates.reserve(axes.size());
-  for (const Axis& a : axes) candidates.push_back(a.name.text);
+  std::string known;
+  for (const Axis& a : axes) known += (known.empty() ? "; its axes are " : ", ") + a.name.text;
   c.report(Code::link_unknown_axis, element, attribute,
            {system.empty() ? std::string("the global coordinate system")
                            : "the coordinate system '" + std::string(system) + "'",
-            name.text, c.suggestion(name.text, candidates)});
+            name.text, std::move(known)});
   return std::nullopt;
 }
 
