@@ -87,8 +87,7 @@ int run_verb(meso::cli::Run& run) {
   try {
     return run.action();
   } catch (const std::bad_alloc&) {
-    run.sink.report({.code = meso::Code::limit_memory,
-                     .args = {run.flags.max_memory.empty() ? "this machine's memory" : run.flags.max_memory}});
+    run.sink.report(meso::cli::memory_ended(run.flags.max_memory));
   } catch (const std::exception& e) {
     run.sink.report({.code = meso::Code::internal, .args = {e.what()}});
   }

@@ -9,6 +9,7 @@
 #include <cmath>
 
 #include "meso/base/help.hpp"
+#include "meso/base/memory_outlook.hpp"
 #include "meso/base/number.hpp"
 #include "meso/expr/expression.hpp"
 #include "meso/package/open_document.hpp"
@@ -167,7 +168,7 @@ void Run::explain_stop() {
   if (!memory_ran_out() || first_error() == nullptr) return;
   sink = DiagnosticSink();
   printed_ = 0;
-  sink.report({.code = Code::limit_memory, .args = {flags.max_memory}});
+  sink.report(memory_ended(flags.max_memory));
 }
 
 int Run::finish(Json report) {
@@ -223,6 +224,11 @@ std::optional<double> Run::angle_rad(const std::string& text, const char* flag) 
     return std::nullopt;
   }
   return positive_value(text, LengthUnit::millimeter, flag);
+}
+
+Diagnostic memory_ended(const std::string& budget) {
+  if (budget.empty()) return {.code = Code::limit_memory, .args = {"this machine's memory"}};
+  return foreseen_memory().value_or(Diagnostic{.code = Code::limit_memory, .args = {budget}});
 }
 
 Json diagnostics_json(const DiagnosticSink& sink) {

@@ -97,6 +97,9 @@ class Run {
   std::optional<RunOptions> options_;
 };
 
+/// Why a run ended that took more than `budget` (--max-memory; empty: none was given), with what it would take where
+/// that is known.
+[[nodiscard]] Diagnostic memory_ended(const std::string& budget);
 [[nodiscard]] Json diagnostics_json(const DiagnosticSink& sink);
 /// Why a run has no result: code, number, exit code, message.
 [[nodiscard]] Json error_json(const Diagnostic& error);

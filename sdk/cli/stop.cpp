@@ -53,9 +53,8 @@ void write_if_ready(int file, std::string_view text) {
   try {
     const bool is_told = !speaks(Speaker::watch);
     remove_unfinished();
-    Diagnostic why{.code = code};
-    if (code == Code::limit_memory) why.args = {most_bytes_text};
-    if (!is_told) tell_last(why, in_json);
+    if (!is_told)
+      tell_last(code == Code::limit_memory ? memory_ended(most_bytes_text) : Diagnostic{.code = code}, in_json);
   } catch (...) {  // no memory is left to say why
   }
   ::_exit(info(code).exit_code);

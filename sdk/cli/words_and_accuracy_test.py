@@ -8,7 +8,9 @@ usage: words_and_accuracy_test.py MESO
 import collections
 import json
 import math
+import os
 import pathlib
+import re
 import shlex
 import subprocess
 import sys
@@ -226,6 +228,27 @@ class Accuracy(Command):
         self.assertEqual([d["code"] for d in report["diagnostics"]], [])
         self.assertGreater(report["triangles"], 250000)
         self.meso(6, "convert", f"{ball} a.ply --tolerance 0.01mm --max-memory 60M --jobs 1", says="MiB, the budget is 60 MiB")
+
+    @unittest.skipUnless(HAS_CONVERT, "this build does not convert")
+    def test_says_what_it_would_take(self):
+        """Whatever the budget: beyond it from the start, while a mesh is refined, while a finer grid is made."""
+        ball = EXAMPLES / "implicit/gyroid_ball.meso"
+        words = [MESO, "convert", ball, self.folder / "a.ply", "--engine", "implicit", "--jobs", "1", "--progress", "none", "--tolerance"]
+        whole = subprocess.Popen([*words, "0.1mm"], stdout=subprocess.DEVNULL)
+        _, status, usage = os.wait4(whole.pid, 0)
+        whole.returncode = os.waitstatus_to_exitcode(status)
+        self.assertEqual(whole.returncode, 0)
+        for tolerance, budget in (("0.1mm", 100), ("0.01mm", 100), ("0.01mm", 60), ("1e-5mm", 200)):
+            done = subprocess.run([*words, tolerance, "--max-memory", f"{budget}M"], capture_output=True, text=True, timeout=60)
+            self.assertEqual(done.returncode, 6, done.stderr)
+            told = re.search(r"LIMIT_TOLERANCE: .* takes about \S+ triangles and (\d+) MiB, the budget is (\d+) MiB", done.stderr)
+            self.assertTrue(told, done.stderr)
+            takes = int(told[1])
+            self.assertGreater(takes, budget)
+            self.assertEqual(int(told[2]), budget)
+            if tolerance == "0.1mm":
+                self.assertGreater(2 * takes, usage.ru_maxrss / 1024)
+                self.assertLess(takes / 2, usage.ru_maxrss / 1024)
 
     @unittest.skipUnless(HAS_CONVERT, "this build does not convert")
     def test_edges_ask_for_no_finer_grid(self):

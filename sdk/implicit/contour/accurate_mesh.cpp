@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "meso/base/memory_mesh_sink.hpp"
+#include "meso/base/memory_outlook.hpp"
 #include "meso/base/number.hpp"
 #include "refine_mesh.hpp"
 #include "simplify_mesh.hpp"
@@ -93,6 +94,7 @@ class Making {
     double triangles_for = 0;  ///< about how many triangles the tolerance takes
   };
   static constexpr double look_near = 0.29, few = 2e-3, few_astray = 5e-3;
+  static constexpr double most_triangles = 8e6, most_finer = 3;  // of grids after the first
   Look look_at(const TriangleMesh& mesh, double spacing);
   [[nodiscard]] static double farthest_on(const Grid& grid);
   bool resolve(Grid grid);
@@ -100,6 +102,11 @@ class Making {
   bool take_refined();
   bool simplify();
   void measure(TriangleMesh mesh, bool may_move, double tolerance);
+  [[nodiscard]] Diagnostic takes(double triangles, double least_bytes = 0) const;
+  void pass_on(const DiagnosticSink& told);
+  [[nodiscard]] double finer_for(double distance, double most) const;
+  [[nodiscard]] double triangles_of_finer(double distance) const;
+  void expect(double triangles);
   [[nodiscard]] bool fits(double triangles);
   [[nodiscard]] bool is_smooth() const { return options_.tolerance > 0 && !options_.sharp; }
   bool go_on();
@@ -112,6 +119,9 @@ class Making {
   const RunOptions& run_;
   DiagnosticSink& diagnostics_;
   AccurateMesh out_;
+  double grid_triangles_ = 0;
+  double expected_ = 0;     // triangles of what is under way
+  double finer_takes_ = 0;  // where that will not be enough
   CountedSource::Counts counts_;
   std::unique_ptr<GridSource> source_;
   std::optional<SurfaceFeet> feet_;
@@ -125,7 +135,10 @@ bool Making::go_on() {
 }
 
 std::unique_ptr<GridSource> Making::counted_on(const Grid& grid) {
-  if (!check_grid(grid, run_, diagnostics_)) return nullptr;
+  DiagnosticSink told;
+  const bool fits = check_grid(grid, run_, told);
+  pass_on(told);
+  if (!fits) return nullptr;
   auto source = source_on_(grid);
   return source ? std::make_unique<CountedSource>(std::move(source), counts_) : nullptr;
 }
@@ -139,8 +152,11 @@ bool Making::contour_on(const Grid& grid) {
   out_.mesh = {};
   WorkingMesh sink(out_.mesh);
   // Vertices of a smooth surface are moved onto it afterwards, when its gradient there is known.
-  const auto report = contour(*source_, sink, {.polish = !is_smooth(), .sharp = options_.sharp}, run_, diagnostics_);
+  DiagnosticSink told;
+  const auto report = contour(*source_, sink, {.polish = !is_smooth(), .sharp = options_.sharp}, run_, told);
+  pass_on(told);
   if (!report) return false;
+  grid_triangles_ = static_cast<double>(out_.mesh.triangles.size());
   out_.euler = report->euler;
   feet_.emplace(*source_, not_stopped());
   return true;
@@ -153,14 +169,39 @@ void Making::measure(TriangleMesh mesh, bool may_move, double tolerance) {
   refinable_->measure(tolerance);
 }
 
+constexpr double bytes_beside = 40 << 20;  // the program, and points that are asked at a time
+
+double bytes_for(double triangles) {
+  return bytes_beside + triangles * static_cast<double>(RefinableMesh::bytes_per_triangle);
+}
+
+Diagnostic Making::takes(double triangles, double least_bytes) const {
+  triangles = std::max(triangles, finer_takes_);
+  return {.code = Code::limit_tolerance,
+          .args = {format_number(options_.tolerance), format_number(std::round(triangles)),
+                   format_number(std::ceil(std::max(bytes_for(triangles), least_bytes) / (1 << 20))),
+                   std::to_string(run_.max_memory_bytes >> 20)}};
+}
+
+// Where memory ends although the mesh was expected to fit, some more than the budget is what it takes.
+void Making::expect(double triangles) {
+  expected_ = triangles;
+  if (options_.tolerance > 0) foresee_memory(takes(triangles, 1.25 * static_cast<double>(run_.max_memory_bytes)));
+}
+
+// A grid that is too large says what it takes itself; what the mesh to the tolerance takes is asked for here.
+void Making::pass_on(const DiagnosticSink& told) {
+  for (const Diagnostic& d : told.diagnostics()) {
+    const bool is_grid = d.code == Code::limit_grid_memory && options_.tolerance > 0;
+    const double least = is_grid ? parse_number(d.args.at(1)).value_or(0) * (1 << 20) : 0;
+    diagnostics_.report(is_grid ? takes(expected_, least) : d);
+  }
+}
+
 bool Making::fits(double triangles) {
-  constexpr double beside = 40 << 20;  // the program, and points that are asked at a time
-  const double bytes = beside + triangles * static_cast<double>(RefinableMesh::bytes_per_triangle);
-  if (bytes <= static_cast<double>(run_.max_memory_bytes)) return true;
-  diagnostics_.report(
-      {.code = Code::limit_tolerance,
-       .args = {format_number(options_.tolerance), format_number(std::round(triangles)),
-                format_number(std::ceil(bytes / (1 << 20))), std::to_string(run_.max_memory_bytes >> 20)}});
+  expect(triangles);
+  if (bytes_for(triangles) <= static_cast<double>(run_.max_memory_bytes)) return true;
+  diagnostics_.report(takes(triangles));
   return false;
 }
 
@@ -192,9 +233,8 @@ bool Making::is_affordable(const Grid& coarse) {
   for (std::size_t i = 0; i < distances.size(); ++i)
     times += std::max(1.0, std::min(distances[i], halves[i]) / options_.tolerance);
   const double triangles = times / static_cast<double>(middles.size()) * static_cast<double>(mesh.triangles.size());
-  return triangles * static_cast<double>(RefinableMesh::bytes_per_triangle) <=
-             unsure * static_cast<double>(run_.max_memory_bytes) ||
-         fits(triangles);
+  expect(triangles);
+  return bytes_for(triangles) <= unsure * static_cast<double>(run_.max_memory_bytes) || fits(triangles);
 }
 
 // Some triangles of a mesh, spread over all of it, are looked at: whether they face as the field does there, and how
@@ -261,6 +301,7 @@ bool Making::resolve(Grid grid) {
     if (farthest_on(grid) <= options_.tolerance) return go_on();
     const Look look = look_at(out_.mesh, spacing);
     if (!go_on()) return false;
+    expect(std::max(grid_triangles_, look.triangles_for));
     // What goes astray beside edges of the surface is a share that goes with the spacing; it is refined where it is.
     // What is too thin for the grid is gone on a grid that is finer.
     const bool only_edges = !is_smooth() && look.astray <= 4 * few_astray &&
@@ -277,7 +318,7 @@ bool Making::resolve(Grid grid) {
                                  : std::clamp(std::sqrt(look.astray / few_astray), 1.4, 2.0);
     grid = with_spacing(grid.box, spacing / finer);
   }
-  if (!fits(static_cast<double>(out_.mesh.triangles.size()))) return false;
+  if (bytes_for(grid_triangles_) > static_cast<double>(run_.max_memory_bytes)) return fits(expected_);
   measure(std::move(out_.mesh), true, options_.tolerance);
   return go_on();
 }
@@ -288,6 +329,7 @@ bool Making::refine() {
   const double aim = is_smooth() ? 0.7 * options_.tolerance : options_.tolerance;
   const double longer = std::max(1.0, refinable_->distance() / aim);
   const int patience = 4 + static_cast<int>(std::log2(longer) / 2);  // a round takes distances to a quarter
+  double left_before = HUGE_VAL;
   std::vector<std::size_t> before;
   for (int round = 0; round < most_rounds; ++round) {
     run_.report("refining", static_cast<double>(round) / most_rounds);
@@ -299,6 +341,9 @@ bool Making::refine() {
     if (halved == 0 && refinable_->normals_were_right(options_.tolerance)) break;
     refinable_->measure(aim);
     if (!go_on()) return false;
+    if (const double left = refinable_->distance(); left > options_.tolerance && left > 0.7 * left_before)
+      finer_takes_ = std::max(finer_takes_, triangles_of_finer(left));  // no refining mends that
+    left_before = refinable_->distance();
     // Where as many edges are halved as before, what is refined is no surface.
     before.push_back(halved);
     if (round >= patience && halved >= before[static_cast<std::size_t>(round - 4)]) break;
@@ -330,26 +375,46 @@ bool Making::to_tolerance(const Grid& first) {
 // it is not worth any memory and time.
 bool Making::take_refined() {
   constexpr int most_attempts = 4;
-  constexpr double most_triangles = 8e6, least_finer = 1.3, usual_finer = 1.7, most_finer = 3;
+  constexpr double least_finer = 1.3;
   AccurateMesh best;
+  bool lacks_memory = false;
   for (int attempt = 1;; ++attempt) {
     const double distance = refinable_->distance();
+    const auto triangles = static_cast<double>(refinable_->mesh().triangles.size());
     if (attempt == 1 || distance < best.distance)
       best = {.mesh = refinable_->take(), .grid = out_.grid, .euler = out_.euler, .distance = distance};
-    if (best.distance <= options_.tolerance || attempt == most_attempts) break;
-    const double spacing = largest_spacing(out_.grid);
-    // What is left goes with the spacing, triangles with its square.
+    if (best.distance <= options_.tolerance) break;
+    finer_takes_ = std::max(triangles_of_finer(distance), std::min(triangles, most_triangles));
+    expect(finer_takes_);
+    lacks_memory = lacks_memory || bytes_for(finer_takes_) > static_cast<double>(run_.max_memory_bytes);
+    if (attempt == most_attempts) break;
     const double affordable =
         std::min(most_triangles, static_cast<double>(run_.max_memory_bytes / RefinableMesh::bytes_per_triangle) / 2);
-    const double finer = std::min(std::clamp(1.2 * distance / options_.tolerance, usual_finer, most_finer),
+    const double finer = std::min(finer_for(distance, most_finer),
                                   std::sqrt(affordable / static_cast<double>(best.mesh.triangles.size())));
-    if (finer < least_finer) break;
-    if (!contour_on(with_spacing(out_.grid.box, spacing / finer))) return false;
+    if (!(finer >= least_finer)) break;
+    if (!contour_on(with_spacing(out_.grid.box, largest_spacing(out_.grid) / finer))) return false;
     measure(std::move(out_.mesh), true, options_.tolerance);
     if (!go_on() || !refine()) return false;
   }
   out_ = std::move(best);
-  return true;
+  if (out_.distance <= options_.tolerance || !lacks_memory) return true;
+  diagnostics_.report(takes(expected_));
+  return false;
+}
+
+// What is left goes with the spacing: how much finer the next grid is.
+double Making::finer_for(double distance, double most) const {
+  constexpr double usual = 1.7;
+  return std::clamp(1.2 * distance / options_.tolerance, usual, most);
+}
+
+// Triangles go with the square of the spacing. Of some fields the next grid is all that it takes, of others what is
+// left goes on as it began: between the two.
+double Making::triangles_of_finer(double distance) const {
+  const double next = finer_for(distance, most_finer), all = finer_for(distance, HUGE_VAL);
+  return std::sqrt(std::min(grid_triangles_ * next * next, most_triangles) *
+                   std::min(grid_triangles_ * all * all, most_triangles));
 }
 
 // What the planes of triangles promise is measured; where it does not hold, once more from the start with less.
@@ -379,6 +444,7 @@ std::optional<AccurateMesh> Making::make(Grid grid) {
     if (!contour_on(grid)) return std::nullopt;
   }
   if (options_.simplify > 0 && !out_.mesh.triangles.empty() && !simplify()) return std::nullopt;
+  forget_foreseen_memory();
   out_.grid_samples = counts_.on_grids;
   out_.surface_samples = counts_.at_points;
   return std::move(out_);

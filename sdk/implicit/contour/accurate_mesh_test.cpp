@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "function_source_for_test.hpp"
+#include "meso/base/memory_outlook.hpp"
 #include "meso/mesh/audit_mesh.hpp"
 
 namespace meso::implicit {
@@ -242,6 +243,37 @@ TEST(AccurateMesh, SaysWhatATinyToleranceWouldTake) {
   EXPECT_FALSE(make_accurate_mesh(on(ball), {.box = cube()}, {.tolerance = 1e-9}, {}, diagnostics));
   ASSERT_EQ(diagnostics.error_count(), 1u);
   EXPECT_EQ(diagnostics.diagnostics()[0].code, Code::limit_tolerance);
+}
+
+TEST(AccurateMesh, SaysWhatItTakesWhateverTheBudget) {
+  const AccurateMeshOptions options{.tolerance = 2e-5, .sharp = false};
+  const double triangles = static_cast<double>(made(ball, {.box = cube()}, options).mesh.triangles.size());
+  for (const std::uint64_t mebibytes : {1, 42, 60, 75}) {
+    DiagnosticSink diagnostics;
+    const RunOptions run{.max_memory_bytes = mebibytes << 20};
+    EXPECT_FALSE(make_accurate_mesh(on(ball), {.box = cube()}, options, run, diagnostics)) << mebibytes;
+    ASSERT_EQ(diagnostics.diagnostics().size(), 1u);
+    const Diagnostic& told = diagnostics.diagnostics()[0];
+    ASSERT_EQ(told.code, Code::limit_tolerance) << render(told);
+    EXPECT_GT(std::stod(told.args[1]), triangles / 3) << mebibytes;
+    EXPECT_LT(std::stod(told.args[1]), triangles * 3) << mebibytes;
+    EXPECT_NEAR(std::stod(told.args[2]), 40 + std::stod(told.args[1]) * 160 / (1 << 20), 1) << mebibytes;
+  }
+}
+
+TEST(AccurateMesh, SaysWhatItTakesToWhoeverEndsIt) {
+  bool is_refined = false;
+  const RunOptions run{.max_memory_bytes = 64 << 20,
+                       .progress = [&](std::string_view stage, double) { is_refined |= stage == "refining"; },
+                       .cancelled = [&] { return is_refined; }};
+  DiagnosticSink diagnostics;
+  EXPECT_FALSE(make_accurate_mesh(on(ball), {.box = cube()}, {.tolerance = 1e-4}, run, diagnostics));
+  const auto takes = foreseen_memory();
+  ASSERT_TRUE(takes);
+  EXPECT_EQ(takes->code, Code::limit_tolerance);
+  EXPECT_GT(std::stod(takes->args[2]), 64) << "more than the budget, or it would not have been ended for that";
+  made(ball, {.box = cube()}, {.tolerance = 1e-3});
+  EXPECT_FALSE(foreseen_memory());
 }
 
 TEST(AccurateMesh, SaysWhereItCannotBeReached) {

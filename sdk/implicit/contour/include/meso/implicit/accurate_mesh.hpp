@@ -17,7 +17,8 @@
 // a fifth of the samples; at a few places they are checked.
 //
 // The mesh is held in memory: some 160 bytes a triangle. Same bytes for any number of threads.
-// Errors: those of contour(), and LIMIT_TOLERANCE with what it would take. Warning: TOLERANCE_NOT_REACHED.
+// Errors: those of contour(), and LIMIT_TOLERANCE with what it would take; for a process that ends for want of memory
+// before this can be returned, foreseen_memory() has it. Warning: TOLERANCE_NOT_REACHED.
 
 #include <functional>
 
