@@ -43,29 +43,6 @@ class MitredBody {
     return is_closed(why);
   }
 
-  /// False: edges could not be divided finely enough, or the run was to stop.
-  bool make_mesh() {
-    return faces_.mesh(
-        options_, [&](std::uint32_t edge, const MeshFineness& fineness) { return inner_points_of(edge, fineness); },
-        [&](std::uint32_t strut, const MeshFineness& fineness) { return mesh_of_strut(strut, fineness); });
-  }
-
-  Body finish() { return faces_.body(); }
-
- private:
-  [[nodiscard]] Vec3 at(std::uint32_t node) const { return graph_.nodes[node].position; }
-  [[nodiscard]] std::string place(std::uint32_t node) const {
-    return "(" + format_number(at(node).x) + " " + format_number(at(node).y) + " " + format_number(at(node).z) + ")";
-  }
-  [[nodiscard]] double length_of(std::uint32_t s) const {
-    return norm(at(graph_.struts[s].node[1]) - at(graph_.struts[s].node[0]));
-  }
-  /// Which stub of its node an end is.
-  [[nodiscard]] std::size_t place_of(Leaving l) const {
-    const auto& leaving = joints_.leaving[joints_.node(l)];
-    return static_cast<std::size_t>(std::ranges::find(leaving, l) - leaving.begin());
-  }
-
   bool find_miters(std::string& why) {
     for (std::uint32_t n = 0; n < graph_.nodes.size(); ++n) {
       if (joints_.leaving[n].empty()) {
@@ -90,6 +67,29 @@ class MitredBody {
     }
     return true;
   }
+  /// False: edges could not be divided finely enough, or the run was to stop.
+  bool make_mesh() {
+    return faces_.mesh(
+        options_, [&](std::uint32_t edge, const MeshFineness& fineness) { return inner_points_of(edge, fineness); },
+        [&](std::uint32_t strut, const MeshFineness& fineness) { return mesh_of_strut(strut, fineness); });
+  }
+
+  Body finish() { return faces_.body(); }
+
+ private:
+  [[nodiscard]] Vec3 at(std::uint32_t node) const { return graph_.nodes[node].position; }
+  [[nodiscard]] std::string place(std::uint32_t node) const {
+    return "(" + format_number(at(node).x) + " " + format_number(at(node).y) + " " + format_number(at(node).z) + ")";
+  }
+  [[nodiscard]] double length_of(std::uint32_t s) const {
+    return norm(at(graph_.struts[s].node[1]) - at(graph_.struts[s].node[0]));
+  }
+  /// Which stub of its node an end is.
+  [[nodiscard]] std::size_t place_of(Leaving l) const {
+    const auto& leaving = joints_.leaving[joints_.node(l)];
+    return static_cast<std::size_t>(std::ranges::find(leaving, l) - leaving.begin());
+  }
+
   [[nodiscard]] Stub stub_of(Leaving l) const {
     const BeamGraph::Strut& strut = graph_.struts[l / 2];
     const double growth = (strut.radius[1] - strut.radius[0]) / length_of(l / 2);
@@ -402,6 +402,13 @@ std::optional<Body> mitred_body(const BeamGraph& graph, const LatticeOptions& op
     return {};
   }
   return body.finish();
+}
+
+bool struts_run_free(const BeamGraph& graph, const RunOptions& run) {
+  SnappedRadii snapped;
+  std::string why;
+  const auto joints = joints_of(graph, snapped, why, Meeting::beyond_balls);
+  return joints && MitredBody(*joints, {.run = run}).find_miters(why);
 }
 
 }  // namespace meso::brep

@@ -18,4 +18,8 @@ namespace meso::brep {
 [[nodiscard]] std::optional<Body> mitred_body(const BeamGraph& graph, const LatticeOptions& options,
                                               SnappedRadii& snapped, std::string& why);
 
+/// Is there between any two nodes something of a strut to be seen that meets no other? May be true where mitred_body
+/// refuses.
+[[nodiscard]] bool struts_run_free(const BeamGraph& graph, const RunOptions& run);
+
 }  // namespace meso::brep

@@ -3,7 +3,9 @@
 
 #include <BOPAlgo_BOP.hxx>
 #include <BOPAlgo_PaveFiller.hxx>
+#include <NCollection_DataMap.hxx>
 #include <TopTools_IndexedDataMapOfShapeListOfShape.hxx>
+#include <TopTools_ShapeMapHasher.hxx>
 #include <algorithm>
 #include <array>
 #include <deque>
@@ -88,9 +90,35 @@ double edge_tolerance(const TopoDS_Shape& shape) {
   return largest;
 }
 
+/// Faces that a boolean has not divided are integrated once, in whatever solids they are.
+class Volumes {
+ public:
+  double of(const TopoDS_Shape& shape) {
+    double volume = 0;
+    for (TopExp_Explorer it(shape, TopAbs_FACE); it.More(); it.Next()) {
+      const TopAbs_Orientation way = it.Current().Orientation();
+      if (way == TopAbs_FORWARD || way == TopAbs_REVERSED)
+        volume += (way == TopAbs_FORWARD ? 1 : -1) * of_forward(it.Current().Oriented(TopAbs_FORWARD));
+    }
+    return volume;
+  }
+
+ private:
+  double of_forward(const TopoDS_Shape& face) {
+    if (const double* known = known_.Seek(face)) return *known;
+    const double volume = volume_of(face);
+    known_.Bind(face, volume);
+    return volume;
+  }
+
+  NCollection_DataMap<TopoDS_Shape, double, TopTools_ShapeMapHasher> known_;
+};
+
 /// The pieces that an operation splits its arguments into, and whose piece each is.
 class Pieces {
  public:
+  explicit Pieces(Volumes& volumes) : volumes_(volumes) {}
+
   /// False if the pieces of an argument do not have its volume.
   bool add(const BOPAlgo_BOP& operation, const TopoDS_Shape& argument, bool is_tool) {
     TopTools_ListOfShape images;
@@ -99,14 +127,15 @@ class Pieces {
     for (const TopoDS_Shape& image : images) {
       const TopoDS_Shape* same = operation.ShapesSD().Seek(image);
       const int index = pieces_.Add(same != nullptr ? *same : image);
-      if (static_cast<std::size_t>(index) > owners_.size()) owners_.push_back({0, 0, std::fabs(volume_of(image)), {}});
+      if (static_cast<std::size_t>(index) > owners_.size())
+        owners_.push_back({0, 0, std::fabs(volumes_.of(image)), {}});
       Owners& owners = owners_[static_cast<std::size_t>(index) - 1];
       (is_tool ? owners.tools : owners.objects) += 1;
       owners.arguments.push_back(arguments_.size());
       sum += owners.volume;
     }
     arguments_.push_back(argument);
-    const double whole = volume_of(argument);
+    const double whole = volumes_.of(argument);
     return std::fabs(sum - whole) <= volume_tolerance * whole;
   }
 
@@ -146,11 +175,15 @@ class Pieces {
         owners[part - 1].insert(owners[part - 1].end(), owners_[i].arguments.begin(), owners_[i].arguments.end());
       }
     for (std::size_t i = 0; i < owners.size(); ++i) {
+      const auto is_owner = [&](std::size_t a) { return std::ranges::count(owners[i], a) > 0; };
+      bool is_of_all = true;
+      for (std::size_t a = 0; a < arguments.size(); ++a) is_of_all = is_of_all && is_owner(a);
+      if (is_of_all) continue;
       const TopoDS_Shape& part = parts(static_cast<int>(i) + 1);
       const std::vector<Vec3> points =
           kind == TopAbs_EDGE ? points_along_edges(part, points_an_edge) : points_on_faces(part, points_a_face);
       for (std::size_t a = 0; a < arguments.size(); ++a) {
-        if (std::ranges::count(owners[i], a) > 0) continue;
+        if (is_owner(a)) continue;
         const auto within = std::ranges::count_if(
             points, [&](Vec3 p) { return arguments[a].state(p, 2 * edge_tolerance_mm) == TopAbs_IN; });
         if (within >= 2) return true;
@@ -181,6 +214,7 @@ class Pieces {
     double volume;
     std::vector<std::size_t> arguments;
   };
+  Volumes& volumes_;
   std::vector<TopoDS_Shape> arguments_;
   TopTools_IndexedMapOfShape pieces_;
   std::vector<Owners> owners_;
@@ -193,8 +227,8 @@ struct Attempt {
 };
 
 std::optional<std::string> fault_of(const BOPAlgo_BOP& operation, BOPAlgo_Operation kind, const Solids& objects,
-                                    const Solids& tools, const Solids& result) {
-  Pieces pieces;
+                                    const Solids& tools, const Solids& result, Volumes& volumes) {
+  Pieces pieces(volumes);
   for (const TopoDS_Shape& object : objects)
     if (!pieces.add(operation, object, false)) return "the pieces of a body do not add up to it";
   for (const TopoDS_Shape& tool : tools)
@@ -204,7 +238,7 @@ std::optional<std::string> fault_of(const BOPAlgo_BOP& operation, BOPAlgo_Operat
     if (edge_uses(solid).free > 0) return "the result is not closed";
     if (const double tolerance = edge_tolerance(solid); tolerance > edge_tolerance_mm)
       return "an edge is only known to " + format_number(tolerance) + " mm";
-    volume += volume_of(solid);
+    volume += volumes.of(solid);
   }
   const double expected = pieces.expected(kind);
   if (std::fabs(volume - expected) <= volume_tolerance * pieces.total()) {
@@ -251,8 +285,11 @@ Attempt attempt(BOPAlgo_Operation kind, const Solids& objects, const Solids& too
   TopoDS_Shape whole = operation.Shape();
   BRepTools::RemoveInternals(
       whole);  // a point where surfaces touch bounds nothing, and the mesher fails on two of them
-  Solids result = solids_of(whole);
-  if (auto fault = fault_of(operation, kind, objects, tools, result)) return {{}, {}, *fault};
+  Volumes volumes;
+  Solids result;
+  for (TopExp_Explorer it(whole, TopAbs_SOLID); it.More(); it.Next())
+    result.push_back(volumes.of(it.Current()) < 0 ? it.Current().Reversed() : it.Current());
+  if (auto fault = fault_of(operation, kind, objects, tools, result, volumes)) return {{}, {}, *fault};
   return {std::move(result), images_of(objects, operation), {}};
 }
 

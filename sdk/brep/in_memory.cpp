@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "in_memory.hpp"
 
+#include <ElSLib.hxx>
 #include <ShapeFix_Face.hxx>
 #include <ShapeFix_Shape.hxx>
 #include <ShapeFix_Shell.hxx>
 #include <ShapeFix_Solid.hxx>
 #include <ShapeFix_Wire.hxx>
+#include <cmath>
+#include <numbers>
 
 #include "meso/brep/instance_map.hpp"
 #include "meso/brep/placement.hpp"
@@ -16,9 +19,37 @@ namespace {
 
 constexpr double tolerance = 1e-7;  // OpenCASCADE's own notion of the same point
 
+enum class Mend { all, pcurves };
+
+/// What a wire encloses on its left, by points; nothing where it goes around a pole.
+std::optional<double> area_within(const TopoDS_Wire& wire, const gp_Sphere& sphere) {
+  constexpr int parts = 16;
+  const double pi = std::numbers::pi;
+  double area = 0, around = 0;
+  for (TopoDS_Iterator it(wire); it.More(); it.Next()) {
+    const BRepAdaptor_Curve curve(TopoDS::Edge(it.Value()));
+    const double first = curve.FirstParameter(), step = (curve.LastParameter() - first) / parts;
+    const double way = it.Value().Orientation() == TopAbs_REVERSED ? -1 : 1;
+    double u_before = 0, v_before = 0;
+    for (int i = 0; i <= parts; ++i) {
+      double u = 0, v = 0;
+      ElSLib::Parameters(sphere, curve.Value(first + i * step), u, v);
+      const double turn = std::remainder(u - u_before, 2 * pi);
+      if (i > 0) {
+        around += way * turn;
+        area -= way * turn * (std::sin(v) + std::sin(v_before)) / 2;
+      }
+      u_before = u;
+      v_before = v;
+    }
+  }
+  if (std::fabs(around) > pi) return {};
+  return area * sphere.Radius() * sphere.Radius();
+}
+
 class ShellAssembler {
  public:
-  explicit ShellAssembler(const Shell& shell) : shell_(shell), template_(*shell.geometry) {}
+  ShellAssembler(const Shell& shell, Mend mend) : shell_(shell), template_(*shell.geometry), mend_(mend) {}
 
   TopoDS_Shell assemble() {
     TopoDS_Shell result;
@@ -47,8 +78,35 @@ class ShellAssembler {
       wire.Closed(Standard_True);
       if (TopoDS_Iterator(wire).More()) builder_.Add(result, wire);
     }
+    if (mend_ == Mend::pcurves && has_poles_within(face, surface, result, placed(cell).ScaleFactor()))
+      add_natural_bound(result, surface);
     if (face.reversed) result.Reverse();
     return result;
+  }
+
+  /// Is all that bounds it a hole in a ball, for OpenCASCADE?
+  static bool has_poles_within(const FaceTemplate& face, const Handle(Geom_Surface) & surface,
+                               const TopoDS_Face& forward, double scale) {
+    const Handle(Geom_SphericalSurface) ball = Handle(Geom_SphericalSurface)::DownCast(surface);
+    if (ball.IsNull() || !TopoDS_Iterator(forward).More() || face.moments.area <= 0) return false;
+    double within = 0;
+    for (TopoDS_Iterator it(forward); it.More(); it.Next()) {
+      const auto area = area_within(TopoDS::Wire(it.Value()), ball->Sphere());
+      if (!area) return false;
+      within += *area;
+    }
+    const double area = face.moments.area * scale * scale, all = ball->Area();
+    return std::fabs(area - within - all) < std::fabs(area - within);
+  }
+
+  void add_natural_bound(TopoDS_Face& face, const Handle(Geom_Surface) & surface) const {
+    const BRepBuilderAPI_MakeFace whole(surface, tolerance);
+    TopoDS_Face bounded;
+    builder_.MakeFace(bounded, surface, tolerance);
+    // The same surface: pcurves of the natural bound go on being its own.
+    for (const TopoDS_Shape& from : {TopoDS_Shape(whole.Face()), TopoDS_Shape(face)})
+      for (TopoDS_Iterator it(from); it.More(); it.Next()) builder_.Add(bounded, it.Value());
+    face = bounded;
   }
 
   TopoDS_Edge edge(std::uint32_t index, const Index3& cell) {
@@ -93,13 +151,12 @@ class ShellAssembler {
 
   const Shell& shell_;
   const Template& template_;
+  Mend mend_;
   BRep_Builder builder_;
   InstanceMap<std::uint32_t> vertices_, edges_;
   std::vector<TopoDS_Vertex> vertex_shapes_;
   std::vector<TopoDS_Edge> edge_shapes_;
 };
-
-enum class Mend { all, pcurves };
 
 /// What would divide edges that touch, or take out those that are short.
 void leave_edges(ShapeFix_Shape& fix) {
@@ -120,8 +177,8 @@ TopoDS_Shape assemble(const Solid& solid, Mend mend) {
   BRep_Builder builder;
   TopoDS_Solid result;
   builder.MakeSolid(result);
-  builder.Add(result, ShellAssembler(solid.outer).assemble());
-  for (const Shell& hollow : solid.voids) builder.Add(result, ShellAssembler(hollow).assemble());
+  builder.Add(result, ShellAssembler(solid.outer, mend).assemble());
+  for (const Shell& hollow : solid.voids) builder.Add(result, ShellAssembler(hollow, mend).assemble());
   ShapeFix_Shape fix(result);  // projects pcurves, adds seams and degenerate edges as the STEP reader does
   if (mend == Mend::pcurves) leave_edges(fix);
   fix.Perform();

@@ -12,6 +12,7 @@
 #include "meso/eval/pattern_reach.hpp"
 #include "realise_beam_graph.hpp"
 #include "realise_boundary.hpp"
+#include "realise_graph_step.hpp"
 #include "realise_joined.hpp"
 #include "realise_lattice.hpp"
 #include "realise_part.hpp"
@@ -66,26 +67,20 @@ std::size_t solids_cut(const Body& pieces, const Solids& before) {
   return static_cast<std::size_t>(std::ranges::count(is_left, true));
 }
 
-/// What a template repeats, as solids: for steps and parts that go on from there. Nothing where they hold another
-/// volume than the template.
-std::optional<Solids> solids_from(const Body& body) {
-  DiagnosticSink unused;
-  const auto shape = to_shape(body, unused);
-  if (!shape) return {};
-  Solids solids = solids_of(*shape);
-  double volume = 0;
-  for (const TopoDS_Shape& solid : solids) volume += brep::volume_of(solid);
-  const double expected = measure(body).volume;
-  if (solids.size() != body.solids.size() || !(std::fabs(volume - expected) <= 1e-6 * expected)) return {};
-  return solids;
-}
-
 /// Booleans of struts that fill their cells take minutes and fail. Half a cell is refused before anything is tried.
 bool struts_fit(const Thickness& thickness, double most, const FoldContext& context) {
   if (thickness.ratio() <= most) return true;
   context.solid.report(
       Code::geometry_struts_thick, context.where(),
       {"radius " + format_number(thickness.radius) + " mm in cells of " + format_number(thickness.edge) + " mm"});
+  return false;
+}
+
+/// Where the beams are no graph, cells that differ are joined one by one if they are few.
+bool may_take_booleans(const GraphStep& graph, const FoldContext& context) {
+  if (graph.may_be_joined) return true;
+  context.solid.report(Code::brep_not_realised, context.where(),
+                       {"beams that differ and meet a body: " + graph.why_not});
   return false;
 }
 
@@ -157,8 +152,19 @@ std::optional<FoldStep> PartFold::apply_pattern(FoldedPart& state, const Part& p
     return {};
   const Thickness thickness = strut_thickness(*cells, context_.sink);
   if (context_.sink.has_errors() || !struts_fit(thickness, 0.5, context)) return {};
-  is_done = try_template(state, part, *cells, context, stays_body);
+  const bool may_be_graph = may_be_graph_step(state.solids, *cells, context), differ = !cells->lattice();
+  if (!may_be_graph || !differ || struts_part_on_balls(*cells, context_))
+    is_done = try_template(state, part, *cells, context, stays_body, may_be_graph ? 0 : most_fused_kinds);
   if (is_done || context_.sink.has_errors() || !struts_fit(thickness, 0.4, context)) return {};
+  if (may_be_graph) {
+    GraphStep of_graph = apply_graph(state.solids, *cells, context, state.counts);
+    if (of_graph.step || context_.sink.has_errors()) return std::move(of_graph.step);
+    if (differ && (cells->lattice_of_places() || pattern->mapping == CellMapping::conformal)) {
+      if (!may_take_booleans(of_graph, context)) return {};
+      is_done = try_template(state, part, *cells, context, stays_body, most_fused_kinds);
+      if (is_done || context_.sink.has_errors()) return {};
+    }
+  }
   const bool is_union = apply.operation == ApplyOperation::union_ && state.solids.empty();
   auto made = is_union ? apply_beams(state, *cells, context) : std::nullopt;
   if (context_.sink.has_errors()) return {};
@@ -173,7 +179,7 @@ std::optional<FoldStep> PartFold::apply_pattern(FoldedPart& state, const Part& p
 /// Ways that need no booleans of all cells. Steps and parts that go on from the result need solids: cells that keep
 /// apart are had faster as what they are.
 bool PartFold::try_template(FoldedPart& state, const Part& part, const eval::CellStream& cells,
-                            const FoldContext& context, bool stays_body) {
+                            const FoldContext& context, bool stays_body, std::size_t most_fused) {
   FoldedPart made = state;
   const auto mesh = stays_body ? fineness(options_) : std::nullopt;
   const bool is_union = context.apply.operation == ApplyOperation::union_ && state.solids.empty();
@@ -182,7 +188,7 @@ bool PartFold::try_template(FoldedPart& state, const Part& part, const eval::Cel
   bool is_made = graph_first && try_beam_graph(made, cells, context, mesh);
   if (context_.sink.has_errors()) return false;
   if (!is_made && may_be_lattice(context.apply, state.solids))
-    is_made = try_lattice(made, cells, context, part.id.text, mesh);
+    is_made = try_lattice(made, cells, context, part.id.text, {mesh, most_fused});
   if (context_.sink.has_errors()) return false;
   if (!is_made && may_be_graph && !graph_first) is_made = try_beam_graph(made, cells, context, mesh);
   if (context_.sink.has_errors() || !is_made) return false;
@@ -211,13 +217,15 @@ bool PartFold::try_beams(FoldedPart& state, const Part& part, bool stays_body) {
 }
 
 bool PartFold::try_lattice(FoldedPart& state, const eval::CellStream& cells, const FoldContext& context,
-                           const std::string& part, const std::optional<MeshFineness>& mesh) {
+                           const std::string& part, const LatticeWay& way) {
   const Apply& apply = context.apply;
   if (cells.size() > options_.run.max_cells) return false;
   std::optional<CellRule> whole_cells;
   if (const auto rule = apply.boundary.value_or(BoundaryRule::clip); rule != BoundaryRule::clip)
     whole_cells = CellRule{rule, apply.test.value_or(InsideTest::box), context.clearance};
-  auto lattice = lattice_part({.clip = state.solids, .whole_cells = whole_cells, .mesh = mesh}, cells, context_);
+  auto lattice =
+      lattice_part({.clip = state.solids, .whole_cells = whole_cells, .mesh = way.mesh, .most_fused = way.most_fused},
+                   cells, context_);
   if (!lattice) return false;
   state.counts.placed += cells.size();
   state.counts.kept += lattice->kept;

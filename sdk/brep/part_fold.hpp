@@ -70,10 +70,15 @@ class PartFold final : public PartMaker {
   std::optional<Solids> placed_operand(const Apply& apply, CellCounts& counts);
   /// Step `at`, a pattern, and all after it at once; `state` has not changed where that does not do.
   bool try_joined(FoldedPart& state, const Part& part, std::size_t at);
+  /// `most_fused`: kinds of cells that differ which may take a boolean each.
   bool try_template(FoldedPart& state, const Part& part, const eval::CellStream& cells, const FoldContext& context,
-                    bool stays_body);
+                    bool stays_body, std::size_t most_fused);
+  struct LatticeWay {
+    std::optional<MeshFineness> mesh;
+    std::size_t most_fused;
+  };
   bool try_lattice(FoldedPart& state, const eval::CellStream& cells, const FoldContext& context,
-                   const std::string& part, const std::optional<MeshFineness>& mesh);
+                   const std::string& part, const LatticeWay& way);
   bool try_beam_graph(FoldedPart& state, const eval::CellStream& cells, const FoldContext& context,
                       const std::optional<MeshFineness>& mesh);
   const Operand* operand_of(const Part& part);

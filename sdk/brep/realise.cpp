@@ -5,6 +5,9 @@
 #include <chrono>
 #include <map>
 
+#include "boolean.hpp"
+#include "in_memory.hpp"
+#include "meso/brep/measure.hpp"
 #include "meso/brep/placement.hpp"
 #include "part_fold.hpp"
 #include "realise_part.hpp"
@@ -122,6 +125,18 @@ std::optional<Solids> macrostructure_solids(const eval::Evaluation& evaluation, 
   if (found == all.end()) return {};
   const auto shape = evaluation.shape(*found, context.sink);
   return shape ? solid_from_shape(*shape, {}, context) : std::nullopt;
+}
+
+std::optional<Solids> solids_from(const Body& body) {
+  DiagnosticSink unused;
+  const auto shape = to_shape_as_is(body, unused);
+  if (!shape) return {};
+  Solids solids = solids_of(*shape);
+  double volume = 0;
+  for (const TopoDS_Shape& solid : solids) volume += brep::volume_of(solid);
+  const double expected = measure(body).volume;
+  if (solids.size() != body.solids.size() || !(std::fabs(volume - expected) <= 1e-6 * expected)) return {};
+  return solids;
 }
 
 bool may_be_lattice(const Apply& apply, const Solids& body) {

@@ -69,6 +69,15 @@ bool has_touching_circles(const eval::CellStream& cells) {
   return beams != nullptr && beams->node_radius && beams->node_radius->text == "auto";
 }
 
+bool struts_part_on_balls(const eval::CellStream& cells, const SolidContext& context) {
+  constexpr std::uint64_t many = 100'000;
+  if (cells.size() > many) return true;
+  SnappedRadii snapped;
+  std::string why;
+  auto graph = beam_graph(cells, snapped, why, context);
+  return graph && joints_of(std::move(*graph), snapped, why).has_value();
+}
+
 namespace {
 
 /// `crowded`: what is told where the graph cannot be put together, if anything.

@@ -22,6 +22,9 @@ struct BeamGraphPart {
 /// True if booleans would meet circles that touch, as automatic balls have them: such a lattice is not repeated.
 [[nodiscard]] bool has_touching_circles(const eval::CellStream& cells);
 
+/// Do all struts part on the balls of their nodes? True also where there are too many cells to tell at once.
+[[nodiscard]] bool struts_part_on_balls(const eval::CellStream& cells, const SolidContext& context);
+
 /// Nothing, and no error in the sink, where struts meet in other ways (GEOMETRY_STRUTS_MEET tells why). May throw
 /// Standard_Failure.
 [[nodiscard]] std::optional<BeamGraphPart> beam_graph_part(const eval::CellStream& cells, ElementId where,

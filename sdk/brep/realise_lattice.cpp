@@ -325,7 +325,8 @@ std::optional<ClippedLattice> clipped_lattice(const Found& found, const Index3& 
                             .reuse = true,
                             .block = found.lattice.block,
                             .pieces = request.pieces,
-                            .added = found.added};
+                            .added = found.added,
+                            .most_fused = request.most_fused};
   const auto attempt = [&](const CellShape& cell, DiagnosticSink& sink) {
     return clipped_lattice_body(cell, last, found.body, options, context.run, sink);
   };

@@ -25,5 +25,8 @@ namespace meso::brep {
 
 /// Solids as plain values, meshed if the options say so. May throw Standard_Failure.
 [[nodiscard]] std::optional<Body> to_body(const Solids& solids, const RealiseOptions& options, DiagnosticSink& sink);
+/// And back, for steps and parts that go on from a body that was put together without booleans. Nothing where they hold
+/// another volume than the body. May throw Standard_Failure.
+[[nodiscard]] std::optional<Solids> solids_from(const Body& body);
 
 }  // namespace meso::brep

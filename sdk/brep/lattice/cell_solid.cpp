@@ -427,7 +427,7 @@ std::optional<TopoDS_Shape> fused_in_box(const std::vector<TopoDS_Shape>& solids
 
 std::optional<TopoDS_Shape> solid_in_box(const CellShape& cell, const Reach& reach,
                                          const std::vector<std::uint32_t>& parts, const RunOptions& run,
-                                         DiagnosticSink& sink) {
+                                         DiagnosticSink& sink, FusedBudget* budget) {
   std::vector<TopoDS_Shape> solids;
   const std::vector<CellPrimitive> primitives = primitives_in_box(cell, reach, parts);
   for (std::size_t n = 0; n < parts.size(); ++n) {
@@ -439,8 +439,10 @@ std::optional<TopoDS_Shape> solid_in_box(const CellShape& cell, const Reach& rea
     solids.push_back(cell.solids[part.solid].Moved(TopLoc_Location(move)));
   }
   if (solids.empty()) return TopoDS_Shape();
-  if (cell.varied)
+  if (cell.varied) {
     if (auto inside = put_together(primitives, cell, 0)) return inside;
+    if (budget != nullptr && !budget->take()) return {};
+  }
   // Surfaces that nearly coincide, or nearly meet in one curve, intersect at one tolerance and not at another.
   const double least = std::ranges::any_of(primitives, tapers) ? cell.tolerance() / 4 : 0;
   const char* fault = nullptr;

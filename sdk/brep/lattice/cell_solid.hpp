@@ -3,6 +3,7 @@
 // What the solid is inside one cell box: the primitives of the cell and of the neighbours that reach in, fused and cut
 // to the box. Private.
 
+#include <atomic>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -57,11 +58,22 @@ struct Reach {
 };
 [[nodiscard]] Reach reach_of(const CellShape& cell);
 
+/// How many kinds of box may yet be made by booleans, whichever thread asks.
+class FusedBudget {
+ public:
+  explicit FusedBudget(std::size_t most) : left_(static_cast<std::int64_t>(most)) {}
+  [[nodiscard]] bool take() { return --left_ >= 0; }
+  [[nodiscard]] bool is_exceeded() const { return left_ < 0; }
+
+ private:
+  std::atomic<std::int64_t> left_;
+};
+
 /// The given parts, fused and cut to the box; null if there is nothing. Empty, with a diagnostic, if a boolean fails or
-/// its volume contradicts an independent one, or the run is to stop.
+/// its volume contradicts an independent one, or the run is to stop; without one, if cells vary and the budget is spent.
 [[nodiscard]] std::optional<TopoDS_Shape> solid_in_box(const CellShape& cell, const Reach& reach,
                                                        const std::vector<std::uint32_t>& parts, const RunOptions& run,
-                                                       DiagnosticSink& sink);
+                                                       DiagnosticSink& sink, FusedBudget* budget = nullptr);
 
 /// Takes no boolean: some 50 times faster.
 [[nodiscard]] bool is_put_together(const CellShape& cell, const Reach& reach, const std::vector<std::uint32_t>& parts);

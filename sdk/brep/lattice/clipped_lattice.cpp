@@ -143,7 +143,6 @@ ClipCounts counts_of(const std::vector<ClippedCell>& results, Vec3 size, Diagnos
 }
 
 constexpr std::size_t most_kinds = 20'000;  ///< each takes 20 to 200 milliseconds
-constexpr std::size_t most_fused = 1'000;   ///< half a second to a second
 
 /// Of fewer cells a boolean is sooner done than this many boxes of a body that reaches far beyond them.
 bool is_worth_it(std::size_t distinct, std::uint64_t kept) { return kept > 100 || distinct <= 100 + 8 * kept; }
@@ -174,10 +173,13 @@ class LatticeMaker {
     });
     if (run_.should_stop()) return stopped();
     CellKinds kinds = first_kinds(cells);
-    if (const std::size_t most = most_alike_with_none(kinds); kinds.parts().size() > most)
-      return fault("more boxes than " + std::to_string(most) + " are alike with none other");
-    auto solids = kind_solids(cell_, reach(), kinds.parts(), run_, sink_);
+    if (kinds.parts().size() > most_kinds)
+      return fault("more boxes than " + std::to_string(most_kinds) + " are alike with none other");
+    if (takes_too_many_booleans(kinds)) return too_many_booleans();
+    FusedBudget budget(options_.most_fused);
+    auto solids = kind_solids(cell_, reach(), kinds.parts(), run_, sink_, &budget);
     if (run_.should_stop()) return stopped();
+    if (budget.is_exceeded()) return too_many_booleans();
     if (!solids) return {};
     solids_ = std::move(*solids);
     if (std::string amiss = clip(cells, kinds); !amiss.empty()) return fault(std::move(amiss));
@@ -205,13 +207,21 @@ class LatticeMaker {
               return varied_->parts_of(box, [&](const Index3& cell) { return cells.in_pattern(cell); });
             }};
   }
-  /// How many kinds there may be.
-  [[nodiscard]] std::size_t most_alike_with_none(const CellKinds& kinds) const {
+  /// Before any is made: judged by the places of circles. Some that pass are joined all the same.
+  [[nodiscard]] bool takes_too_many_booleans(const CellKinds& kinds) const {
     const auto& parts = kinds.parts();
-    if (parts.size() <= most_fused || parts.size() > most_kinds) return most_kinds;
-    const auto fused =
-        std::ranges::count_if(parts, [&](const auto& of_kind) { return !is_put_together(cell_, reach(), of_kind); });
-    return static_cast<std::size_t>(fused) > most_fused ? most_fused : most_kinds;
+    if (!varied_ || parts.size() <= options_.most_fused) return false;
+    std::size_t fused = 0;
+    return std::ranges::any_of(parts, [&](const auto& of_kind) {
+      return !is_put_together(cell_, reach(), of_kind) && ++fused > options_.most_fused;
+    });
+  }
+  std::nullopt_t too_many_booleans() {
+    if (options_.most_fused == 0) return std::nullopt;
+    const double minutes = std::ceil(0.7 * static_cast<double>(options_.most_fused) / 60);  // measured
+    sink_.report(
+        {.code = Code::limit_booleans, .args = {std::to_string(options_.most_fused), format_number(minutes)}});
+    return std::nullopt;
   }
   std::nullopt_t fault(std::string what) {
     sink_.report({.code = Code::geometry_not_repeatable, .args = {std::move(what)}});

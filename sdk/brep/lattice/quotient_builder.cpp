@@ -283,7 +283,7 @@ bool walls_overlap(const CellKind& low, const CellKind& high, int axis, Vec3 siz
 
 std::optional<std::vector<TopoDS_Shape>> kind_solids(const CellShape& cell, const Reach& reach,
                                                      const std::vector<std::vector<std::uint32_t>>& kinds,
-                                                     const RunOptions& run, DiagnosticSink& sink) {
+                                                     const RunOptions& run, DiagnosticSink& sink, FusedBudget* budget) {
   std::vector<TopoDS_Shape> solids(kinds.size());
   std::vector<CellShape> cells;  // one for each thread: OpenCASCADE writes to the shapes it reads
   for (std::size_t i = 0; i < workers_for(kinds.size(), run); ++i) {
@@ -292,7 +292,7 @@ std::optional<std::vector<TopoDS_Shape>> kind_solids(const CellShape& cell, cons
   }
   std::vector<DiagnosticSink> sinks(kinds.size());
   const bool done = in_parallel(kinds.size(), run, [&](std::size_t worker, std::size_t k) {
-    const auto solid = solid_in_box(cells[worker], reach, kinds[k], run, sinks[k]);
+    const auto solid = solid_in_box(cells[worker], reach, kinds[k], run, sinks[k], budget);
     if (solid) solids[k] = *solid;
     return solid.has_value();
   });
