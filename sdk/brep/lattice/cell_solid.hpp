@@ -70,7 +70,8 @@ class FusedBudget {
 };
 
 /// The given parts, fused and cut to the box; null if there is nothing. Empty, with a diagnostic, if a boolean fails or
-/// its volume contradicts an independent one, or the run is to stop; without one, if cells vary and the budget is spent.
+/// its volume contradicts an independent one, or the run is to stop; without one, if cells vary and the budget is
+/// spent.
 [[nodiscard]] std::optional<TopoDS_Shape> solid_in_box(const CellShape& cell, const Reach& reach,
                                                        const std::vector<std::uint32_t>& parts, const RunOptions& run,
                                                        DiagnosticSink& sink, FusedBudget* budget = nullptr);

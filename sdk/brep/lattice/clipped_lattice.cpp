@@ -219,8 +219,7 @@ class LatticeMaker {
   std::nullopt_t too_many_booleans() {
     if (options_.most_fused == 0) return std::nullopt;
     const double minutes = std::ceil(0.7 * static_cast<double>(options_.most_fused) / 60);  // measured
-    sink_.report(
-        {.code = Code::limit_booleans, .args = {std::to_string(options_.most_fused), format_number(minutes)}});
+    sink_.report({.code = Code::limit_booleans, .args = {std::to_string(options_.most_fused), format_number(minutes)}});
     return std::nullopt;
   }
   std::nullopt_t fault(std::string what) {

@@ -10,8 +10,8 @@
 // template, clipped where the macrostructure's boundary crosses it ("lattice"); beams whose struts all end within the
 // balls of their nodes are put together from whole balls, cylinders and cones ("beamGraph"); cells that keep clear of
 // the macrostructure's boundary and of each other become solids or voids of their own ("cells"); what is left is joined
-// by general booleans, each checked ("boolean"): beams that differ as one body, other cells one by one. A part without steps is its macrostructure ("direct"). Parts
-// that stand in cells or as operands are made once.
+// by general booleans, each checked ("boolean"): beams that differ as one body, other cells one by one. A part without
+// steps is its macrostructure ("direct"). Parts that stand in cells or as operands are made once.
 //
 // Units: millimetres, radians. Errors: an empty optional and GEOMETRY_*, IMPORT_*, LIMIT_* or BREP_NOT_REALISED in the
 // sink; never a wrong body. Cost: lattice, a second and 0.1 ms a cell; cells, about 1 ms each; boolean, 50 ms and more
