@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // Struts that differ and meet beyond the balls of their nodes, against bodies. Truths: what a point is in by
 // definition, and that what a body leaves of a lattice and what the lattice leaves of it add up.
-#include <numbers>
+#include <algorithm>
+#include <cmath>
 
 #include "realise_fixture.hpp"
 
 namespace meso::brep {
 namespace {
 
-constexpr double pi = std::numbers::pi;
 using GraphStepTest = RealiseTest;
 
 struct Strut {
@@ -61,31 +61,37 @@ const std::string at_nodes = "<set parameter='r' value='0.3 + 0.02*global.x' at=
 double by_place(Vec3 p, int) { return 0.3 + 0.02 * p.x; }
 double by_index(Vec3, int i) { return 0.3 + 0.1 * i; }
 
-/// Of what is in both the struts and a body within a box, by points; to a thousandth of the box.
+/// Of what is in both the struts and a body within a box, by points that are spread evenly and along no plane of the
+/// lattice.
 template <typename Body>
 double volume_by_points(const std::vector<Strut>& struts, const Body& in_body, Vec3 low, Vec3 high) {
-  constexpr int parts = 60;
-  const Vec3 step = (high - low) / parts;
+  constexpr int count = 300'000;
+  constexpr double root = 1.2207440846057596;  // of x^4 = x + 1
   int within = 0;
-  for (int i = 0; i < parts * parts * parts; ++i) {
-    const Vec3 p{low.x + (i % parts + 0.5) * step.x, low.y + (i / parts % parts + 0.5) * step.y,
-                 low.z + (i / parts / parts + 0.5) * step.z};
+  Vec3 share{0.5, 0.5, 0.5};
+  for (int i = 0; i < count; ++i) {
+    Vec3 p;
+    for (std::size_t a = 0; a < 3; ++a) {
+      share[a] = std::fmod(share[a] + 1 / std::pow(root, static_cast<double>(a) + 1), 1);
+      p[a] = low[a] + share[a] * (high[a] - low[a]);
+    }
     within += in_body(p) && holds(struts, p);
   }
-  return within * step.x * step.y * step.z;
+  const Vec3 size = high - low;
+  return within * size.x * size.y * size.z / count;
 }
 
 TEST_F(GraphStepTest, WhatABlockLeavesOfALattice) {
-  for (const auto& [set, radius] : {std::pair{at_nodes, by_place}, {by_cell, by_index}}) {
+  for (const auto& [set, radius] : {std::pair{at_nodes, &by_place}, {by_cell, &by_index}}) {
     const auto made = realised(macrostructure("<box dx='8' dy='8' dz='4'/>") + document(set, cut_to));
     ASSERT_TRUE(made) << set;
     EXPECT_EQ(made->way, "boolean");
     EXPECT_TRUE(audit(made->body).clean());
-    EXPECT_EQ(made->body.solids.size(), 1u);
+    EXPECT_EQ(made->body.solids.size(), 2u);  // no corner is one of all four cells
     EXPECT_EQ(made->cells.kept, 4u);
     EXPECT_EQ(made->cells.crossing, 4u);
     const double truth = volume_by_points(struts(radius), [](Vec3) { return true; }, {0, 0, 0}, {8, 8, 4});
-    EXPECT_NEAR(measure(made->body).volume, truth, 2e-3 * truth) << set;
+    EXPECT_NEAR(measure(made->body).volume, truth, 5e-3 * truth) << set;
   }
 }
 
@@ -97,7 +103,7 @@ TEST_F(GraphStepTest, WhatACylinderLeavesOfALattice) {
   EXPECT_TRUE(audit(made->body).clean());
   const auto in_cylinder = [](Vec3 p) { return std::hypot(p.x - 4, p.y - 4) <= 3.5; };
   const double truth = volume_by_points(struts(by_place), in_cylinder, {0.5, 0.5, 0.7}, {7.5, 7.5, 3.3});
-  EXPECT_NEAR(measure(made->body).volume, truth, 3e-3 * truth);
+  EXPECT_NEAR(measure(made->body).volume, truth, 5e-3 * truth);
 }
 
 // V(M n L) + V(M - L) = V(M); V(M u L) = V(M - L) + V(L), where L is put together without a boolean.
