@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 
 #include "brick_contents.hpp"
 #include "cell_period.hpp"
@@ -13,6 +14,8 @@ namespace {
 
 constexpr std::int32_t side = 8;  ///< samples of a brick; one row of it is strut_lanes
 static_assert(side == strut_lanes);
+constexpr std::int32_t part_side = 4;
+constexpr std::size_t brick_parts = std::size_t{side / part_side} * (side / part_side) * (side / part_side);
 
 /// What all threads share.
 struct Shared {
@@ -60,20 +63,72 @@ class Layer {
     z_ = z;
     bricks_.assign(bricks, {});
     contents_.clear();
+    parts_.clear();
+    kept_.clear();
   }
   [[nodiscard]] std::int32_t z() const { return z_; }
   [[nodiscard]] const BrickContents& contents() const { return contents_; }
 
   const Brick& brick(const Shared& shared, std::int32_t x, std::int32_t y) {
-    Brick& brick =
-        bricks_[static_cast<std::size_t>(y) * static_cast<std::size_t>(shared.counts[0]) + static_cast<std::size_t>(x)];
+    Brick& brick = bricks_[number(shared, x, y)];
     if (brick.state == Brick::State::unknown)
       brick = contents_.add({middle_of(shared, x, y), shared.half, shared.radius}, shared.nearness,
                             [&](const Box3& box, auto f) { shared.cells->index().visit(box, f); });
     return brick;
   }
 
+  static constexpr double most_steps_off = 0.51;
+  /// Which of the brick's fields can be the least somewhere in the part of it where the node is: so many steps of the
+  /// grid from its nodes, or less.
+  std::span<const std::uint32_t> fields_near(const Shared& shared, const std::array<std::int32_t, 3>& node) {
+    const std::size_t place = number(shared, node[0] / side, node[1] / side);
+    parts_.resize(bricks_.size() * brick_parts);
+    Part& part = parts_[place * brick_parts + part_of(node)];
+    if (part.count == 0) {
+      part.first = static_cast<std::uint32_t>(kept_.size());
+      keep(contents_.fields(bricks_[place]), box_of_part(shared, node));
+      part.count = static_cast<std::uint32_t>(kept_.size()) - part.first;
+    }
+    return {kept_.data() + part.first, part.count};
+  }
+
+  /// Within its brick.
+  static std::size_t part_of(const std::array<std::int32_t, 3>& node) {
+    std::size_t part = 0;
+    for (const std::int32_t n : node) part = part * (side / part_side) + static_cast<std::size_t>(n % side / part_side);
+    return part;
+  }
+
  private:
+  static std::size_t number(const Shared& shared, std::int32_t x, std::int32_t y) {
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(shared.counts[0]) + static_cast<std::size_t>(x);
+  }
+
+  static Box3 box_of_part(const Shared& shared, const std::array<std::int32_t, 3>& node) {
+    Vec3 middle, half;
+    for (std::size_t a = 0; a < 3; ++a) {
+      const double step = shared.grid.spacing(a);
+      middle[a] = shared.grid.box.min[a] + step * (node[a] / part_side * part_side + (part_side - 1) / 2.0);
+      for (std::size_t row = 0; row < 3; ++row)
+        half[row] += step * ((part_side - 1) / 2.0 + most_steps_off) * std::abs(shared.field_from_grid.linear(row, a));
+    }
+    middle = shared.field_from_grid * middle;
+    return {middle - half, middle + half};
+  }
+
+  void keep(std::span<const PlacedField> fields, const Box3& box) {
+    values_.clear();
+    double most = HUGE_VAL;
+    for (const PlacedField& field : fields) {
+      values_.push_back(field.interval(box));
+      if (!values_.back().undefined) most = std::min(most, values_.back().hi);
+    }
+    for (std::size_t f = 0; f < fields.size(); ++f) {
+      const double slack = 1e-9 * (std::abs(values_[f].lo) + std::abs(most));  // rounding must leave none out
+      if (!(values_[f].lo > most + slack)) kept_.push_back(static_cast<std::uint32_t>(f));
+    }
+  }
+
   Vec3 middle_of(const Shared& shared, std::int32_t x, std::int32_t y) const {
     const std::array<std::int32_t, 3> at{x, y, z_};
     Vec3 middle;
@@ -88,6 +143,12 @@ class Layer {
   std::int32_t z_ = -1;
   std::vector<Brick> bricks_;
   BrickContents contents_;
+  struct Part {
+    std::uint32_t first = 0, count = 0;  // of kept_; not known yet: none
+  };
+  std::vector<Part> parts_;
+  std::vector<std::uint32_t> kept_;  // numbers of fields in their bricks
+  std::vector<Interval> values_;
 };
 
 class Rows final : public ExternalRows {
@@ -163,26 +224,63 @@ class Rows final : public ExternalRows {
 
   void evaluate(std::span<const Vec3> points, std::span<const double> within, double* out) {
     const Shared& s = *shared_;
-    for (std::size_t first = 0; first < points.size();) {
+    places_.clear();
+    for (std::size_t first = 0, last = 0; first < points.size(); first = last) {
       const std::array<std::int32_t, 3> at = brick_of(points[first]);
-      near_.assign(1, s.field_from_grid * points[first]);
-      std::size_t last = first + 1;
-      double radius = 0;
-      for (; last < points.size() && brick_of(points[last]) == at; ++last) {
-        const Vec3 p = s.field_from_grid * points[last];
-        const double distance = norm(p - near_[0]);
-        if (std::isfinite(s.cells->lipschitz()) && !(distance <= s.edge)) break;
-        radius = std::max(radius, distance);
-        near_.push_back(p);
-      }
+      while (++last < points.size() && brick_of(points[last]) == at) continue;
       Layer& layer = layer_at(at[2]);
-      sample_near(layer, layer.brick(s, at[0], at[1]), radius, out + first);
-      // What the brick does not know is at least the margin away.
-      for (std::size_t n = first; n < last; ++n)
-        if (std::abs(out[n]) > s.nearness.margin && !(within[n] <= s.nearness.margin))
-          out[n] = s.cells->value(near_[n - first]);
-      first = last;
+      const Brick& brick = layer.brick(s, at[0], at[1]);
+      if (brick.fields > 0) {
+        for (std::size_t n = first; n < last; ++n) places_.push_back({place_of(points[n]), n});
+        continue;
+      }
+      near_.clear();
+      for (std::size_t n = first; n < last; ++n) near_.push_back(s.field_from_grid * points[n]);
+      sample_near(layer, brick, {}, out + first);
+      for (std::size_t n = first; n < last; ++n) out[n] = known(out[n], within[n], near_[n - first]);
     }
+    if (!places_.empty()) evaluate_places(points, within, out);
+  }
+
+  /// Bodies by formula are asked for many points in little more time than for one: points that stand near each other
+  /// are asked together, wherever they are in the list.
+  void evaluate_places(std::span<const Vec3> points, std::span<const double> within, double* out) {
+    const Shared& s = *shared_;
+    std::ranges::sort(places_);
+    for (std::size_t first = 0, last = 0; first < places_.size(); first = last) {
+      near_.clear();
+      double radius = 0;
+      bool is_beside = true;
+      for (; last < places_.size() && places_[last].place == places_[first].place; ++last) {
+        near_.push_back(s.field_from_grid * points[places_[last].point]);
+        radius = std::max(radius, norm(near_.back() - near_[0]));
+        is_beside = is_beside && is_beside_node(points[places_[last].point]);
+      }
+      const std::array<std::int32_t, 3> node = node_at(points[places_[first].point]);
+      Layer& layer = layer_at(node[2] / side);
+      const Brick& brick = layer.brick(s, node[0] / side, node[1] / side);
+      found_.resize(near_.size());
+      sample_near(layer, brick, fields_for(layer, brick, node, is_beside, radius), found_.data());
+      for (std::size_t n = first; n < last; ++n) {
+        const std::size_t point = places_[n].point;
+        out[point] = known(found_[n - first], within[point], near_[n - first]);
+      }
+    }
+  }
+
+  /// What the brick does not know is at least the margin away.
+  [[nodiscard]] double known(double value, double within, Vec3 p) const {
+    const bool is_known = std::abs(value) <= shared_->nearness.margin || within <= shared_->nearness.margin;
+    return is_known ? value : shared_->cells->value(p);
+  }
+
+  /// By part of a brick.
+  [[nodiscard]] std::uint64_t place_of(Vec3 p) const {
+    const std::array<std::int32_t, 3> node = node_at(p);
+    std::uint64_t place = 0;
+    for (const std::size_t axis : {2, 1, 0})
+      place = place * std::uint64_t(shared_->counts[axis]) + std::uint64_t(node[axis] / side);
+    return place * brick_parts + Layer::part_of(node);
   }
 
   /// What of a row is copied: the same for all rows of a band, which are asked for one after the other.
@@ -222,29 +320,54 @@ class Rows final : public ExternalRows {
     return at;
   }
 
-  /// Of `near_`, all of them within `radius` of the first. Where slopes are bounded, what fields are at the first tells
-  /// which of them can be the least of all at the others. Those are asked for all points at once.
-  void sample_near(const Layer& layer, const Brick& brick, double radius, double* out) {
+  /// Those of the brick's fields that count at `near_`, which are beside nodes of one part of it.
+  std::span<const std::uint32_t> fields_for(Layer& layer, const Brick& brick, const std::array<std::int32_t, 3>& node,
+                                            bool is_beside, double radius) {
+    if (std::isfinite(shared_->cells->lipschitz())) return fields_within(layer.contents().fields(brick), radius);
+    if (is_beside) return layer.fields_near(*shared_, node);
+    which_.resize(brick.fields);
+    std::iota(which_.begin(), which_.end(), 0U);
+    return which_;
+  }
+
+  /// Points outside of the grid are not.
+  [[nodiscard]] bool is_beside_node(Vec3 p) const {
+    const std::array<std::int32_t, 3> at = node_at(p);
+    const Vec3 off = p - shared_->grid.node(at[0], at[1], at[2]);
+    bool result = true;
+    for (std::size_t a = 0; a < 3; ++a)
+      result = result && std::abs(off[a]) * shared_->inverse_spacing[a] <= Layer::most_steps_off;
+    return result;
+  }
+
+  /// Which of these can be the least of all at `near_`, all of them within `radius` of the first: slopes are bounded,
+  /// and what fields are at the first tells.
+  std::span<const std::uint32_t> fields_within(std::span<const PlacedField> fields, double radius) {
+    which_.clear();
+    double most = HUGE_VAL;
+    lows_.clear();
+    for (const PlacedField& field : fields) {
+      const double value = field.value(near_[0]), change = field.lipschitz * radius;
+      const double slack = 1e-9 * (std::abs(value) + change);  // rounding must leave none out
+      lows_.push_back(value - change - slack);
+      most = std::min(most, value + change + slack);
+    }
+    for (std::size_t f = 0; f < fields.size(); ++f)
+      if (!(lows_[f] > most)) which_.push_back(static_cast<std::uint32_t>(f));
+    return which_;
+  }
+
+  /// What the brick's struts, and these of its fields, are at `near_`.
+  void sample_near(const Layer& layer, const Brick& brick, std::span<const std::uint32_t> fields, double* out) {
     std::fill_n(out, near_.size(),
                 brick.state == Brick::State::inside ? -shared_->nearness.far : shared_->nearness.far);
     const Capsule* const capsules = layer.contents().capsules(brick);
     for (std::uint32_t c = 0; c < brick.capsules; ++c)
       for (std::size_t n = 0; n < near_.size(); ++n)
         out[n] = std::min(out[n], axis_distance(capsules[c], near_[n]) - capsules[c].radius);
-    const std::span<const PlacedField> fields = layer.contents().fields(brick);
-    const bool can_tell = near_.size() > 1 && std::isfinite(shared_->cells->lipschitz());
-    double most = HUGE_VAL;
-    lows_.assign(fields.size(), -HUGE_VAL);
-    for (std::size_t f = 0; can_tell && f < fields.size(); ++f) {
-      const double value = fields[f].value(near_[0]), change = fields[f].lipschitz * radius;
-      const double slack = 1e-9 * (std::abs(value) + change);  // rounding must leave none out
-      lows_[f] = value - change - slack;
-      most = std::min(most, value + change + slack);
-    }
     values_.resize(near_.size());
-    for (std::size_t f = 0; f < fields.size(); ++f) {
-      if (lows_[f] > most) continue;
-      fields[f].values(near_, local_, values_.data());
+    for (const std::uint32_t f : fields) {
+      layer.contents().fields(brick)[f].values(near_, local_, values_.data());
       for (std::size_t n = 0; n < near_.size(); ++n) out[n] = std::min(out[n], values_[n]);
     }
   }
@@ -263,7 +386,14 @@ class Rows final : public ExternalRows {
   std::vector<RunsOfBand> runs_;  // by band of y
   BrickSampler sampler_;
   std::vector<Vec3> near_, local_;  // points that are asked together
-  std::vector<double> lows_, values_;
+  std::vector<double> lows_, values_, found_;
+  std::vector<std::uint32_t> which_;
+  struct Place {
+    std::uint64_t place;
+    std::size_t point;
+    friend auto operator<=>(const Place&, const Place&) = default;
+  };
+  std::vector<Place> places_;
 };
 
 class PreparedBricks final : public ExternalField::Prepared {

@@ -160,6 +160,7 @@ TEST(PlacedCells, NeighboursAreAnsweredAsIfAlone) {
       const Vec3 middle = number.point(2.8);
       for (int n = 0; n < 12; ++n) points.push_back(middle + number.point(0.12));
     }
+    for (std::size_t n = 0; n < 3600; ++n) points.push_back(points[n * 7 % 3600] + number.point(0.01));  // far apart
     std::vector<double> within(points.size(), HUGE_VAL), together(points.size());
     rows->values_at(points, within, together.data());
     for (std::size_t n = 0; n < points.size(); ++n) {

@@ -5,6 +5,7 @@
 #include <array>
 #include <bit>
 #include <cassert>
+#include <memory>
 #include <unordered_map>
 
 #include "meso/expr/operations.hpp"
@@ -128,7 +129,7 @@ void FlatTerm::values(std::span<const Vec3> points, std::span<double> out) const
   assert(points.size() == out.size());
   // So many points at once that their intermediate values stay in the cache.
   const std::size_t batch = std::clamp<std::size_t>(16384 / steps_.size(), 1, std::max<std::size_t>(points.size(), 1));
-  std::vector<double> table(steps_.size() * batch);
+  const auto table = std::make_unique_for_overwrite<double[]>(steps_.size() * batch);
   for (std::size_t first = 0; first < points.size(); first += batch) {
     const std::size_t count = std::min(batch, points.size() - first);
     for (std::size_t s = 0; s < steps_.size(); ++s) {
@@ -136,7 +137,7 @@ void FlatTerm::values(std::span<const Vec3> points, std::span<double> out) const
       const TermNode& node = *step.node;
       double* row = &table[s * batch];
       if (step.op == Op::number) {
-        std::fill_n(row, count, node.number);
+        if (first == 0) std::fill_n(row, count, node.number);  // later batches are no longer
       } else if (step.op == Op::name) {
         for (std::size_t i = 0; i < count; ++i)
           row[i] = node.axis == TermNode::external_axis
