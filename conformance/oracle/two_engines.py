@@ -156,6 +156,15 @@ def compared(a, file, folder, part):
     return "thin" if exact["volume"] / exact["area"] < 5 * h / 2 else "wrong", words, off
 
 
+def compared_and_cleared(a, file, folder, part):
+    """Meshes of a thousand documents would fill a disk."""
+    try:
+        return compared(a, file, folder, part)
+    finally:
+        for mesh in [] if a.keep else folder.glob("*.stl"):
+            mesh.unlink()
+
+
 def random_one(a, kind, seed, parent):
     folder = parent / f"{kind}_{seed}"
     folder.mkdir(parents=True, exist_ok=True)
@@ -164,13 +173,13 @@ def random_one(a, kind, seed, parent):
         return f"{kind} {seed}", "refused", "no body to import", 0
     file = folder / "part.meso"
     file.write_text(made[0].replace("@VALIDATION@", ""), encoding="utf-8")
-    return f"{kind} {seed}", *compared(a, file, folder, "a")
+    return f"{kind} {seed}", *compared_and_cleared(a, file, folder, "a")
 
 
 def known_one(a, file, parent):
     folder = parent / f"{file.parent.name}_{file.stem}"
     folder.mkdir(parents=True, exist_ok=True)
-    return f"{file.parent.name}/{file.name}", *compared(a, file, folder, None)
+    return f"{file.parent.name}/{file.name}", *compared_and_cleared(a, file, folder, None)
 
 
 def main():
