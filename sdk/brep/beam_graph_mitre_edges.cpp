@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "beam_graph_spans.hpp"
+
 namespace meso::brep {
 namespace {
 
@@ -13,7 +15,7 @@ constexpr double same_corner = 1e-6;     // of the ball, between points that are
 constexpr double same_turn = 1e-7;       // radians
 constexpr double curve_accuracy = 3e-8;  // of the ball, between a curve and what it is laid through
 constexpr std::size_t most_spans = 2000;
-constexpr double least_span = 1e-7;  // radians
+constexpr double least_span = 1e-7, most_span = 1;  // radians
 
 Vec3 unit(Vec3 v) { return v / norm(v); }
 
@@ -222,31 +224,49 @@ class EdgeMaker {
     return curve_through(i, piece, turns);
   }
 
-  /// Adds the ends of spans that cubics are accurate in; false where none are.
+  /// Adds the ends of spans that one polynomial is accurate in; false where none are.
   bool divide_curve(std::size_t i, const Mitre& part, double from, double to, std::vector<double>& turns) const {
-    const double middle = (from + to) / 2, step = to - from;
+    const double step = to - from;
     if (step < least_span || turns.size() > most_spans) return false;
-    const Vec3 p = node_.point(i, part, from), q = node_.point(i, part, to), m = node_.point(i, part, middle);
-    const Vec3 off = 0.5 * (p + q) + step / 8 * (node_.tangent(i, part, from) - node_.tangent(i, part, to)) - m;
-    if (step <= 0.3 && norm(off) <= curve_accuracy * node_.ball()) {
+    if (step <= most_span && is_accurate(i, part, from, to)) {
       turns.push_back(to);
       return true;
     }
+    const double middle = (from + to) / 2;
     return divide_curve(i, part, from, middle, turns) && divide_curve(i, part, middle, to, turns);
   }
 
-  /// Cubic, with the tangents that the surfaces have.
-  [[nodiscard]] BSplineCurve curve_through(std::size_t i, const Piece& piece, const std::vector<double>& turns) const {
-    BSplineCurve curve{.degree = 3};
-    for (std::size_t n = 0; n < turns.size(); ++n) {
-      const bool is_first = n == 0, is_last = n + 1 == turns.size();
-      const Vec3 p = origin_ + node_.point(i, piece.part, turns[n]), t = node_.tangent(i, piece.part, turns[n]);
-      if (!is_first) curve.poles.push_back(p - (turns[n] - turns[n - 1]) / 3 * t);
-      if (is_first || is_last) curve.poles.push_back(geometry_.vertices[is_first ? piece.first : piece.last]);
-      if (!is_last) curve.poles.push_back(p + (turns[n + 1] - turns[n]) / 3 * t);
-      curve.knots.push_back(turns[n]);
-      curve.multiplicities.push_back(is_first || is_last ? 4 : 2);
+  [[nodiscard]] bool is_accurate(std::size_t i, const Mitre& part, double from, double to) const {
+    const SpanPoles poles = span(i, part, from, to);
+    // In the middles between the places that it is laid through, where it is off most, and beside its ends.
+    return std::ranges::all_of(std::array{0.04, 0.13, 0.35, 0.5, 0.65, 0.87, 0.96}, [&](double t) {
+      const Vec3 off = point_of(poles, t) - node_.point(i, part, from + t * (to - from));
+      return norm(off) <= curve_accuracy * node_.ball();
+    });
+  }
+
+  [[nodiscard]] SpanPoles span(std::size_t i, const Mitre& part, double from, double to) const {
+    std::array<Vec3, 4> points, tangents;
+    for (std::size_t k = 0; k < 4; ++k) {
+      const double turn = k == 0 ? from : k == 3 ? to : from + span_places[k] * (to - from);
+      points[k] = node_.point(i, part, turn);
+      tangents[k] = (to - from) * node_.tangent(i, part, turn);
     }
+    return span_poles(points, tangents);
+  }
+
+  /// With the points and the tangents that the surfaces have at four places of each span.
+  [[nodiscard]] BSplineCurve curve_through(std::size_t i, const Piece& piece, const std::vector<double>& turns) const {
+    BSplineCurve curve{.degree = span_degree};
+    curve.poles.push_back(geometry_.vertices[piece.first]);
+    for (std::size_t n = 0; n + 1 < turns.size(); ++n) {
+      const SpanPoles poles = span(i, piece.part, turns[n], turns[n + 1]);
+      for (std::size_t k = 1; k < span_degree; ++k) curve.poles.push_back(origin_ + poles[k]);
+    }
+    curve.poles.push_back(geometry_.vertices[piece.last]);
+    curve.knots = turns;
+    curve.multiplicities.assign(turns.size(), span_degree - 1);
+    curve.multiplicities.front() = curve.multiplicities.back() = span_degree + 1;
     return curve;
   }
 

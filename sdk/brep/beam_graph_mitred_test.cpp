@@ -7,8 +7,10 @@
 
 #include "beam_graph_ball_faces.hpp"
 #include "beam_graph_mitre_mesh.hpp"
+#include "beam_graph_spans.hpp"
 #include "meso/brep/gaps.hpp"
 #include "realise_fixture.hpp"
+#include "value_geometry.hpp"
 
 namespace meso::brep {
 namespace {
@@ -167,6 +169,51 @@ TEST_F(MitredBeamsTest, CurvesAreOnBothSurfacesForAnyReader) {
   const Gaps gaps = measure_gaps(made->body);
   EXPECT_LT(gaps.edge_mm, 1e-7);
   EXPECT_LT(gaps.vertex_mm, 1e-7);
+}
+
+/// From the surface of a strut that goes on.
+double distance_from(const Cone& c, Vec3 p) {
+  const Vec3 way = c.to - c.from, axis = way / norm(way);
+  const double along = dot(p - c.from, axis), growth = (c.radius_to - c.radius_from) / norm(way);
+  const double off = norm(p - c.from - along * axis) - c.radius_from - growth * along;
+  return std::fabs(off) / std::hypot(1, growth);
+}
+
+TEST_F(MitredBeamsTest, CurvesStayOnBothSurfacesAllTheWay) {
+  constexpr double ball = 0.3;
+  const Beams beams =
+      star(ball, {{{}, {3, 0, 0}, 0.3, 0.5}, {{}, {2, 2.5, 0}, 0.3, 0.2}, {{}, {-1, 2, 1.5}, 0.25, 0.3}});
+  const auto made = realised(text_of(beams));
+  ASSERT_TRUE(made);
+  std::size_t curves = 0;
+  for (const EdgeTemplate& edge : made->body.solids[0].outer.geometry->edges) {
+    const auto* curve = std::get_if<BSplineCurve>(&edge.curve);
+    if (curve == nullptr) continue;
+    ++curves;
+    EXPECT_LE(curve->poles.size(), 60u);  // as cubics they have hundreds
+    const Handle(Geom_Curve) geometry = to_geom(edge.curve);
+    const double first = curve->knots.front(), length = curve->knots.back() - first;
+    for (int i = 0; i <= 1000; ++i) {
+      const gp_Pnt p = geometry->Value(first + length * i / 1000);
+      std::vector<double> distances;
+      for (const Cone& c : beams.cones) distances.push_back(distance_from(c, {p.X(), p.Y(), p.Z()}));
+      std::ranges::sort(distances);
+      EXPECT_LT(distances[1], 4e-8 * ball) << i;
+    }
+  }
+  EXPECT_GT(curves, 2u);
+}
+
+TEST(MitreSpans, APolynomialOfDegreeSevenIsItself) {
+  const auto curve = [](double t) { return Vec3{std::pow(t, 7) - t, 2 * std::pow(t, 5), 1 - std::pow(t, 6)}; };
+  const auto slope = [](double t) { return Vec3{7 * std::pow(t, 6) - 1, 10 * std::pow(t, 4), -6 * std::pow(t, 5)}; };
+  std::array<Vec3, 4> points, tangents;
+  for (std::size_t k = 0; k < 4; ++k) {
+    points[k] = curve(span_places[k]);
+    tangents[k] = slope(span_places[k]);
+  }
+  const SpanPoles poles = span_poles(points, tangents);
+  for (int i = 0; i <= 10; ++i) EXPECT_NEAR(norm(point_of(poles, i / 10.0) - curve(i / 10.0)), 0, 1e-13);
 }
 
 TEST(MitreMesh, ABorderThatTurnsBackIsFilledWithoutFolds) {
