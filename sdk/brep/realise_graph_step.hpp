@@ -15,7 +15,7 @@
 namespace meso::brep {
 
 /// About two minutes of a processor.
-inline constexpr std::size_t most_graph_faces = 20'000;
+inline constexpr std::size_t most_graph_faces = 5'000;
 
 /// Beams that are clipped, whatever the operation.
 [[nodiscard]] bool may_be_graph_step(const Solids& body, const eval::CellStream& cells, const FoldContext& context);
