@@ -3,7 +3,7 @@
 // A step of a part whose cells are beams and whose body is there already: all beams are put together as one graph, and
 // one boolean cuts, joins or subtracts that. Private.
 //
-// Such a boolean takes about 5 ms for each face of the graph, whatever the struts' radii are. Cells joined one by one
+// Such a boolean takes about 10 ms for each face of the graph, whatever the struts' radii are. Cells joined one by one
 // take half a second each, and booleans of struts that nearly touch fail.
 
 #include <optional>
@@ -15,7 +15,7 @@
 namespace meso::brep {
 
 /// About two minutes of a processor.
-inline constexpr std::size_t most_graph_faces = 5'000;
+inline constexpr std::size_t most_graph_faces = 12'000;
 
 /// Beams that are clipped, whatever the operation.
 [[nodiscard]] bool may_be_graph_step(const Solids& body, const eval::CellStream& cells, const FoldContext& context);
