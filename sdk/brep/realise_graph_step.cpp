@@ -19,7 +19,7 @@ constexpr std::uint64_t few_cells = 8;  ///< are joined one by one if they must
 
 std::string too_large(std::uint64_t faces) {
   return "a boolean of about " + std::to_string(faces) + " faces takes too long, " + std::to_string(most_graph_faces) +
-         " are the most";
+         " are the most; nodeRadius=\"auto\" takes none in a lattice of boxes side by side";
 }
 
 /// Beams that would keep apart if they were thinner: what is told of them. Empty: that is not the reason.

@@ -11,6 +11,7 @@
 
 #include "lattice/primitive_field.hpp"
 #include "lattice/test_cells.hpp"
+#include "lattice/varied_cells.hpp"
 #include "meso/brep/audit.hpp"
 #include "meso/brep/measure.hpp"
 #include "meso/brep/triangles.hpp"
@@ -221,6 +222,37 @@ TEST(ClippedLattice, StopsWhenAsked) {
   EXPECT_FALSE(clipped_lattice_body(*cell, {3, 3, 3}, {box({1.3, 1.7, 2.1}, {12, 14, 13})}, {}, run, sink));
   ASSERT_FALSE(sink.diagnostics().empty());
   EXPECT_EQ(sink.diagnostics().back().code, Code::cancelled);
+}
+
+// Pillars that end flat in the walls of their boxes, each as thick as no other: a boolean each.
+TEST(ClippedLattice, BooleansOfCellsThatVaryAreCounted) {
+  constexpr std::int32_t count = 3;
+  LatticeCell cell{.box = {{0, 0, 0}, {4, 4, 4}}, .primitives = {}};
+  auto varied = std::make_shared<VariedCells>(Index3{count - 1, 0, 0});
+  double area = 0;
+  for (std::int32_t i = 0; i < count; ++i) {
+    const double radius = 0.5 + 0.1 * i;
+    cell.primitives.emplace_back(Frustum{{2, 2, 0}, {2, 2, 4}, radius, radius});
+    varied->set({i, 0, 0}, {static_cast<std::uint32_t>(i)});
+    area += pi * radius * radius;
+  }
+  DiagnosticSink sink;
+  auto shape = cell_shape(cell, sink);
+  ASSERT_TRUE(shape);
+  shape->varied = varied;
+  const auto made = [&](std::size_t most_fused) {
+    sink = DiagnosticSink();
+    return clipped_lattice_body(*shape, {count - 1, 0, 0}, {}, {.most_fused = most_fused}, {}, sink);
+  };
+  const auto all = made(count);
+  ASSERT_TRUE(all);
+  EXPECT_NEAR(measure(all->body).volume, 4 * area, 1e-9);
+  EXPECT_FALSE(made(count - 1));
+  ASSERT_EQ(sink.diagnostics().size(), 1u);
+  EXPECT_EQ(sink.diagnostics().front().code, Code::limit_booleans);
+  // Nothing is told where another way is to be tried.
+  EXPECT_FALSE(made(0));
+  EXPECT_TRUE(sink.diagnostics().empty());
 }
 
 }  // namespace
