@@ -154,15 +154,16 @@ std::optional<FoldStep> PartFold::apply_pattern(FoldedPart& state, const Part& p
   if (context_.sink.has_errors() || !struts_fit(thickness, 0.5, context)) return {};
   const bool may_be_graph = may_be_graph_step(state.solids, *cells, context), differ = !cells->lattice();
   if (!may_be_graph || !differ || struts_part_on_balls(*cells, context_))
-    is_done = try_template(state, part, *cells, context, stays_body, may_be_graph ? 0 : most_fused_kinds);
+    is_done =
+        try_template(state, part, *cells, context, stays_body, may_be_graph ? FusedLimit{0, false} : FusedLimit{});
   if (is_done || context_.sink.has_errors() || !struts_fit(thickness, 0.4, context)) return {};
   if (may_be_graph) {
     GraphStep of_graph = apply_graph(state.solids, *cells, context, state.counts);
     if (of_graph.step || context_.sink.has_errors()) return std::move(of_graph.step);
     if (differ && (cells->lattice_of_places() || pattern->mapping == CellMapping::conformal)) {
-      if (!may_take_booleans(of_graph, context)) return {};
-      is_done = try_template(state, part, *cells, context, stays_body, most_fused_kinds);
-      if (is_done || context_.sink.has_errors()) return {};
+      if (of_graph.may_be_fused)
+        is_done = try_template(state, part, *cells, context, stays_body, *of_graph.may_be_fused);
+      if (is_done || context_.sink.has_errors() || !may_take_booleans(of_graph, context)) return {};
     }
   }
   const bool is_union = apply.operation == ApplyOperation::union_ && state.solids.empty();
@@ -179,7 +180,7 @@ std::optional<FoldStep> PartFold::apply_pattern(FoldedPart& state, const Part& p
 /// Ways that need no booleans of all cells. Steps and parts that go on from the result need solids: cells that keep
 /// apart are had faster as what they are.
 bool PartFold::try_template(FoldedPart& state, const Part& part, const eval::CellStream& cells,
-                            const FoldContext& context, bool stays_body, std::size_t most_fused) {
+                            const FoldContext& context, bool stays_body, const FusedLimit& fused) {
   FoldedPart made = state;
   const auto mesh = stays_body ? fineness(options_) : std::nullopt;
   const bool is_union = context.apply.operation == ApplyOperation::union_ && state.solids.empty();
@@ -188,7 +189,7 @@ bool PartFold::try_template(FoldedPart& state, const Part& part, const eval::Cel
   bool is_made = graph_first && try_beam_graph(made, cells, context, mesh);
   if (context_.sink.has_errors()) return false;
   if (!is_made && may_be_lattice(context.apply, state.solids))
-    is_made = try_lattice(made, cells, context, part.id.text, {mesh, most_fused});
+    is_made = try_lattice(made, cells, context, part.id.text, {mesh, fused});
   if (context_.sink.has_errors()) return false;
   if (!is_made && may_be_graph && !graph_first) is_made = try_beam_graph(made, cells, context, mesh);
   if (context_.sink.has_errors() || !is_made) return false;
@@ -223,9 +224,8 @@ bool PartFold::try_lattice(FoldedPart& state, const eval::CellStream& cells, con
   std::optional<CellRule> whole_cells;
   if (const auto rule = apply.boundary.value_or(BoundaryRule::clip); rule != BoundaryRule::clip)
     whole_cells = CellRule{rule, apply.test.value_or(InsideTest::box), context.clearance};
-  auto lattice =
-      lattice_part({.clip = state.solids, .whole_cells = whole_cells, .mesh = way.mesh, .most_fused = way.most_fused},
-                   cells, context_);
+  auto lattice = lattice_part({.clip = state.solids, .whole_cells = whole_cells, .mesh = way.mesh, .fused = way.fused},
+                              cells, context_);
   if (!lattice) return false;
   state.counts.placed += cells.size();
   state.counts.kept += lattice->kept;

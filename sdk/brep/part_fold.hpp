@@ -11,6 +11,7 @@
 #include <map>
 
 #include "lattice/cell_selection.hpp"
+#include "lattice/clipped_lattice.hpp"
 #include "meso/brep/realise.hpp"
 #include "meso/eval/evaluation.hpp"
 #include "realise_fold.hpp"
@@ -70,12 +71,11 @@ class PartFold final : public PartMaker {
   std::optional<Solids> placed_operand(const Apply& apply, CellCounts& counts);
   /// Step `at`, a pattern, and all after it at once; `state` has not changed where that does not do.
   bool try_joined(FoldedPart& state, const Part& part, std::size_t at);
-  /// `most_fused`: kinds of cells that differ which may take a boolean each.
   bool try_template(FoldedPart& state, const Part& part, const eval::CellStream& cells, const FoldContext& context,
-                    bool stays_body, std::size_t most_fused);
+                    bool stays_body, const FusedLimit& fused);
   struct LatticeWay {
     std::optional<MeshFineness> mesh;
-    std::size_t most_fused;
+    FusedLimit fused;
   };
   bool try_lattice(FoldedPart& state, const eval::CellStream& cells, const FoldContext& context,
                    const std::string& part, const LatticeWay& way);

@@ -16,11 +16,8 @@ namespace meso::brep {
 namespace {
 
 constexpr std::uint64_t few_cells = 8;  ///< are joined one by one if they must
-
-std::string too_large(std::uint64_t faces) {
-  return "a boolean of about " + std::to_string(faces) + " faces takes too long, " + std::to_string(most_graph_faces) +
-         " are the most; nodeRadius=\"auto\" takes none in a lattice of boxes side by side";
-}
+/// Kinds of box that may be had in the time that the boolean of the graph has taken.
+constexpr FusedLimit few_fused{200, false};
 
 /// Beams that would keep apart if they were thinner: what is told of them. Empty: that is not the reason.
 std::string thickness_of(const BeamGraph& graph, const RunOptions& run) {
@@ -131,17 +128,25 @@ std::optional<Places> places_of(const Solids& body, const eval::CellStream& cell
 struct GraphSolids {
   Solids solids;
   std::string why_not;
+  std::optional<FusedLimit> may_be_fused{};
   bool may_be_joined = false;
 };
 
+GraphSolids too_large(std::uint64_t faces) {
+  return {{},
+          "a boolean of about " + std::to_string(faces) + " faces takes too long, " + std::to_string(most_graph_faces) +
+              " are the most; nodeRadius=\"auto\" takes none in a lattice of boxes side by side"};
+}
+
 GraphSolids graph_solids(const eval::CellStream& cells, const FoldContext& context) {
   const SolidContext& solid = context.solid;
-  if (cells.size() > most_graph_faces) return {{}, too_large(cells.size())};
+  constexpr std::uint64_t most_cells = 100'000;  // to be looked at: a second
+  if (cells.size() > most_cells) return too_large(cells.size());
   SnappedRadii snapped;
   std::string why;
   const auto graph = beam_graph(cells, snapped, why, solid);
-  if (!graph) return {{}, why, true};
-  if (graph->struts.size() > most_graph_faces) return {{}, too_large(graph->struts.size())};
+  if (!graph) return {{}, why, FusedLimit{}, true};
+  if (graph->struts.size() > most_graph_faces) return too_large(graph->struts.size());
   DiagnosticSink apart;
   const SolidContext own{solid.source, solid.run, apart, solid.parts};
   const auto made = beam_graph_part(cells, context.where(), {.run = solid.run}, own);
@@ -150,17 +155,18 @@ GraphSolids graph_solids(const eval::CellStream& cells, const FoldContext& conte
       why = d.args.front();
     else if (made)
       solid.sink.report(d);
-  if (!made && cells.size() <= few_cells) return {{}, why, true};
+  if (!made && cells.size() <= few_cells) return {{}, why, FusedLimit{}, true};
   if (!made) {
     if (const std::string thick = thickness_of(*graph, solid.run); !thick.empty())
       solid.report(Code::geometry_struts_thick, context.where(), {thick});
     return {{}, why};
   }
-  if (const std::size_t faces = measure(made->body).faces; faces > most_graph_faces) return {{}, too_large(faces)};
+  if (const std::size_t faces = measure(made->body).faces; faces > most_graph_faces) return too_large(faces);
   // Cells that keep apart are placed, not joined.
-  if (cells.size() > 1 && 2 * made->body.solids.size() > cells.size()) return {{}, "the cells keep apart", true};
+  if (cells.size() > 1 && 2 * made->body.solids.size() > cells.size())
+    return {{}, "the cells keep apart", FusedLimit{}, true};
   auto solids = solids_from(made->body);
-  if (!solids) return {{}, "OpenCASCADE's faces do not enclose what the beams hold", cells.size() <= few_cells};
+  if (!solids) return {{}, "OpenCASCADE's faces do not enclose what the beams hold", FusedLimit{}, true};
   return {std::move(*solids), {}};
 }
 
@@ -174,7 +180,7 @@ bool may_be_graph_step(const Solids& body, const eval::CellStream& cells, const 
 GraphStep apply_graph(const Solids& body, const eval::CellStream& cells, const FoldContext& context,
                       CellCounts& counts) {
   GraphSolids graph = graph_solids(cells, context);
-  if (graph.solids.empty()) return {{}, std::move(graph.why_not), graph.may_be_joined};
+  if (graph.solids.empty()) return {{}, std::move(graph.why_not), graph.may_be_fused, graph.may_be_joined};
   DiagnosticSink apart;
   const SolidContext own{context.solid.source, context.solid.run, apart, context.solid.parts};
   auto step = apply_solids(body, graph.solids, {own, context.apply, 0, context.max_boolean_solids});
@@ -183,7 +189,8 @@ GraphStep apply_graph(const Solids& body, const eval::CellStream& cells, const F
       for (const Diagnostic& d : apart.diagnostics()) context.solid.sink.report(d);
       return {};
     }
-    return {{}, apart.diagnostics().empty() ? "the boolean fails" : apart.diagnostics().front().args.back()};
+    const std::string fault = apart.diagnostics().empty() ? "" : ": " + message(apart.diagnostics().front());
+    return {{}, "a boolean fails" + fault, few_fused};
   }
   const auto places = places_of(body, cells, context.solid);
   if (!places) return {};

@@ -9,6 +9,7 @@
 #include <optional>
 #include <string>
 
+#include "lattice/clipped_lattice.hpp"
 #include "meso/eval/evaluation.hpp"
 #include "realise_fold.hpp"
 
@@ -22,8 +23,9 @@ inline constexpr std::size_t most_graph_faces = 12'000;
 
 struct GraphStep {
   std::optional<FoldStep> step;
-  std::string why_not{};       ///< where there is no step and no error in the sink
-  bool may_be_joined = false;  ///< there is none for another reason than that struts meet, or that there are many
+  std::string why_not{};                     ///< where there is no step and no error in the sink
+  std::optional<FusedLimit> may_be_fused{};  ///< boxes of cells that differ, where those are tried next
+  bool may_be_joined = false;                ///< and all cells by booleans after that
 };
 
 /// Counts are added where there is a step. May throw Standard_Failure.

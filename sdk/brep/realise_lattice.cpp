@@ -326,7 +326,7 @@ std::optional<ClippedLattice> clipped_lattice(const Found& found, const Index3& 
                             .block = found.lattice.block,
                             .pieces = request.pieces,
                             .added = found.added,
-                            .most_fused = request.most_fused};
+                            .fused = request.fused};
   const auto attempt = [&](const CellShape& cell, DiagnosticSink& sink) {
     return clipped_lattice_body(cell, last, found.body, options, context.run, sink);
   };

@@ -36,8 +36,8 @@ struct LatticeRequest {
   Solids added{};                         ///< what it is united with after that
   std::optional<CellRule> whole_cells{};  ///< the cells that this takes are not cut; nothing is removed or added
   std::optional<MeshFineness> mesh{};
-  PiecesAsked pieces = PiecesAsked::none;     ///< where there is something to cut to, or to add
-  std::size_t most_fused = most_fused_kinds;  ///< see ClipOptions
+  PiecesAsked pieces = PiecesAsked::none;  ///< where there is something to cut to, or to add
+  FusedLimit fused{};
 };
 
 /// (Union of the cells n clip - removed) u added, as one repeated template; or nothing, and no error in the sink, where

@@ -176,7 +176,7 @@ class LatticeMaker {
     if (kinds.parts().size() > most_kinds)
       return fault("more boxes than " + std::to_string(most_kinds) + " are alike with none other");
     if (takes_too_many_booleans(kinds)) return too_many_booleans();
-    FusedBudget budget(options_.most_fused);
+    FusedBudget budget(options_.fused.most);
     auto solids = kind_solids(cell_, reach(), kinds.parts(), run_, sink_, &budget);
     if (run_.should_stop()) return stopped();
     if (budget.is_exceeded()) return too_many_booleans();
@@ -210,16 +210,16 @@ class LatticeMaker {
   /// Before any is made: judged by the places of circles. Some that pass are joined all the same.
   [[nodiscard]] bool takes_too_many_booleans(const CellKinds& kinds) const {
     const auto& parts = kinds.parts();
-    if (!varied_ || parts.size() <= options_.most_fused) return false;
+    if (!varied_ || parts.size() <= options_.fused.most) return false;
     std::size_t fused = 0;
     return std::ranges::any_of(parts, [&](const auto& of_kind) {
-      return !is_put_together(cell_, reach(), of_kind) && ++fused > options_.most_fused;
+      return !is_put_together(cell_, reach(), of_kind) && ++fused > options_.fused.most;
     });
   }
   std::nullopt_t too_many_booleans() {
-    if (options_.most_fused == 0) return std::nullopt;
-    const double minutes = std::ceil(0.7 * static_cast<double>(options_.most_fused) / 60);  // measured
-    sink_.report({.code = Code::limit_booleans, .args = {std::to_string(options_.most_fused), format_number(minutes)}});
+    if (!options_.fused.is_told) return std::nullopt;
+    const double minutes = std::ceil(0.7 * static_cast<double>(options_.fused.most) / 60);  // measured
+    sink_.report({.code = Code::limit_booleans, .args = {std::to_string(options_.fused.most), format_number(minutes)}});
     return std::nullopt;
   }
   std::nullopt_t fault(std::string what) {

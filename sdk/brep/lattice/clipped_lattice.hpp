@@ -23,7 +23,11 @@ struct ClippedLattice {
 
 enum class PiecesAsked : std::uint8_t { none, of_cut, of_both, of_both_and_no_body };
 
-inline constexpr std::size_t most_fused_kinds = 1'000;
+/// Kinds of cells that vary which may take a boolean each, half a second to a second.
+struct FusedLimit {
+  std::size_t most = 1'000;
+  bool is_told = true;  ///< LIMIT_BOOLEANS; else, where there is another way, nothing
+};
 
 struct ClipOptions {
   std::optional<MeshFineness> mesh{};
@@ -31,9 +35,7 @@ struct ClipOptions {
   Index3 block{1, 1, 1};  ///< boxes of one cell along each axis, where a cell has several: these count as one
   PiecesAsked pieces = PiecesAsked::none;
   std::vector<TopoDS_Shape> added{};  ///< solids that are united with what is left, as `body` is given
-  /// Kinds of cells that vary which may take a boolean each, half a second to a second. More are LIMIT_BOOLEANS; where
-  /// none may, the first one ends it without a diagnostic.
-  std::size_t most_fused = most_fused_kinds;
+  FusedLimit fused{};
 };
 
 /// Body n regularised union of the cells (0, 0, 0) ... `last`. `body`: outward solids in the frame of the cell whose

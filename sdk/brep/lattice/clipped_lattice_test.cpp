@@ -240,18 +240,18 @@ TEST(ClippedLattice, BooleansOfCellsThatVaryAreCounted) {
   auto shape = cell_shape(cell, sink);
   ASSERT_TRUE(shape);
   shape->varied = varied;
-  const auto made = [&](std::size_t most_fused) {
+  const auto made = [&](const FusedLimit& fused) {
     sink = DiagnosticSink();
-    return clipped_lattice_body(*shape, {count - 1, 0, 0}, {}, {.most_fused = most_fused}, {}, sink);
+    return clipped_lattice_body(*shape, {count - 1, 0, 0}, {}, {.fused = fused}, {}, sink);
   };
-  const auto all = made(count);
+  const auto all = made({count});
   ASSERT_TRUE(all);
   EXPECT_NEAR(measure(all->body).volume, 4 * area, 1e-9);
-  EXPECT_FALSE(made(count - 1));
+  EXPECT_FALSE(made({count - 1}));
   ASSERT_EQ(sink.diagnostics().size(), 1u);
   EXPECT_EQ(sink.diagnostics().front().code, Code::limit_booleans);
   // Nothing is told where another way is to be tried.
-  EXPECT_FALSE(made(0));
+  EXPECT_FALSE(made({count - 1, false}));
   EXPECT_TRUE(sink.diagnostics().empty());
 }
 
