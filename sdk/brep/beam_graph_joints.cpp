@@ -14,9 +14,10 @@ namespace {
 
 constexpr double least_gap = 1e-9;  // millimetres between surfaces that keep apart
 
-std::string place(Vec3 p) {
-  return "(" + format_number(p.x) + " " + format_number(p.y) + " " + format_number(p.z) + ")";
-}
+/// To tenths of a micrometre: for people.
+std::string rounded(double mm) { return format_number(std::nearbyint(mm * 1e4) / 1e4); }
+
+std::string place(Vec3 p) { return "(" + rounded(p.x) + " " + rounded(p.y) + " " + rounded(p.z) + ")"; }
 
 double length_of(const BeamGraph& graph, const BeamGraph::Strut& s) {
   return norm(graph.nodes[s.node[1]].position - graph.nodes[s.node[0]].position);
@@ -160,7 +161,7 @@ class JointFinder {
       if (gap_at(n, ball) >= -touching_gap) continue;
       double low = ball, high = ball * (1 + equal_radii);
       if (changed || gap_at(n, high) < 0)
-        return refuse("struts at the node " + place(at(n)) + " meet beyond its ball of radius " + format_number(ball) +
+        return refuse("struts at the node " + place(at(n)) + " meet beyond its ball of radius " + rounded(ball) +
                       " mm" + larger_ball(n));
       for (int i = 0; i < 60; ++i) {
         const double middle = (low + high) / 2;
