@@ -159,6 +159,7 @@ std::optional<FoldStep> PartFold::apply_pattern(FoldedPart& state, const Part& p
   if (is_done || context_.sink.has_errors() || !struts_fit(thickness, 0.4, context)) return {};
   if (may_be_graph) {
     GraphStep of_graph = apply_graph(state.solids, *cells, context, state.counts);
+    if (of_graph.step && misses(*of_graph.step, state, part, *cells, apply)) return {};
     if (of_graph.step || context_.sink.has_errors()) return std::move(of_graph.step);
     if (differ && (cells->lattice_of_places() || pattern->mapping == CellMapping::conformal)) {
       if (of_graph.may_be_fused)
@@ -170,11 +171,16 @@ std::optional<FoldStep> PartFold::apply_pattern(FoldedPart& state, const Part& p
   auto made = is_union ? apply_beams(state, *cells, context) : std::nullopt;
   if (context_.sink.has_errors()) return {};
   if (!made) made = apply_cells(state.solids, *cells, context, state.counts);
-  if (made && !made->reaches && !state.solids.empty() && eval::must_reach(*cells, apply)) {
-    eval::report_no_reach(evaluation_, *cells, part, context_.sink);
-    return {};
-  }
+  if (made && misses(*made, state, part, *cells, apply)) return {};
   return made;
+}
+
+/// Told as an error: cells at records of a field none of which comes near the body.
+bool PartFold::misses(const FoldStep& step, const FoldedPart& state, const Part& part, const eval::CellStream& cells,
+                      const Apply& apply) {
+  if (step.reaches || state.solids.empty() || !eval::must_reach(cells, apply)) return false;
+  eval::report_no_reach(evaluation_, cells, part, context_.sink);
+  return true;
 }
 
 /// Ways that need no booleans of all cells. Steps and parts that go on from the result need solids: cells that keep
@@ -199,7 +205,7 @@ bool PartFold::try_template(FoldedPart& state, const Part& part, const eval::Cel
 bool PartFold::take(FoldedPart& state, FoldedPart made, bool stays_body) {
   if (!stays_body) {
     if (2 * made.body->solids.size() > made.counts.kept - state.counts.kept) return false;
-    auto solids = solids_from(*made.body);
+    auto solids = solids_from(*made.body, Edges::mended);
     if (!solids) return false;
     made.solids = std::move(*solids);
     made.body.reset();

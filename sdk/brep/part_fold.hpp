@@ -69,6 +69,8 @@ class PartFold final : public PartMaker {
   std::optional<FoldStep> apply_part(FoldedPart& state, const FoldContext& context);
   /// The part that a step applies, where it puts it; what was placed to make it is added to `counts`.
   std::optional<Solids> placed_operand(const Apply& apply, CellCounts& counts);
+  bool misses(const FoldStep& step, const FoldedPart& state, const Part& part, const eval::CellStream& cells,
+              const Apply& apply);
   /// Step `at`, a pattern, and all after it at once; `state` has not changed where that does not do.
   bool try_joined(FoldedPart& state, const Part& part, std::size_t at);
   bool try_template(FoldedPart& state, const Part& part, const eval::CellStream& cells, const FoldContext& context,

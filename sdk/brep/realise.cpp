@@ -127,9 +127,9 @@ std::optional<Solids> macrostructure_solids(const eval::Evaluation& evaluation, 
   return shape ? solid_from_shape(*shape, {}, context) : std::nullopt;
 }
 
-std::optional<Solids> solids_from(const Body& body) {
+std::optional<Solids> solids_from(const Body& body, Edges edges) {
   DiagnosticSink unused;
-  const auto shape = to_shape_as_is(body, unused);
+  const auto shape = edges == Edges::mended ? to_shape(body, unused) : to_shape_as_is(body, unused);
   if (!shape) return {};
   Solids solids = solids_of(*shape);
   double volume = 0;

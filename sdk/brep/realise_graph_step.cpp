@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "realise_graph_step.hpp"
 
+#include <IntCurvesFace_ShapeIntersector.hxx>
 #include <algorithm>
 #include <cmath>
 #include <deque>
@@ -9,6 +10,7 @@
 #include "meso/base/number.hpp"
 #include "meso/brep/measure.hpp"
 #include "point_in_solid.hpp"
+#include "point_within.hpp"
 #include "realise_beam_graph.hpp"
 #include "realise_part.hpp"
 
@@ -43,17 +45,24 @@ std::string thickness_of(const BeamGraph& graph, const RunOptions& run) {
 
 /// Which cells the body's boundary passes through, and which are inside of it.
 struct Places {
-  std::uint64_t inside = 0, crossing = 0;
+  std::uint64_t all = 0, inside = 0, crossing = 0;
 };
 
-/// Tells by points: those of beams that come near the boundary.
+/// Where beams come near the boundary, it passes through them if it cuts an axis, if a point of its edges is in a beam,
+/// or if points of beams are on both sides.
 class BeamPlaces {
  public:
   explicit BeamPlaces(const Solids& body) {
+    constexpr std::size_t points_an_edge = 15;
     for (const TopoDS_Shape& solid : body) {
       solids_.emplace_back(solid);
+      lines_.emplace_back().Load(solid, Precision::Confusion());
       for (TopExp_Explorer it(solid, TopAbs_FACE); it.More(); it.Next())
         surfaces_.emplace_back(TopoDS::Face(it.Current()));
+      const std::vector<Vec3> along = points_along_edges(solid, points_an_edge);
+      edges_.insert(edges_.end(), along.begin(), along.end());
+      for (TopExp_Explorer it(solid, TopAbs_VERTEX); it.More(); it.Next())
+        edges_.push_back(to_vec(BRep_Tool::Pnt(TopoDS::Vertex(it.Current()))));
     }
   }
 
@@ -70,6 +79,8 @@ class BeamPlaces {
     const Vec3 centre = (box.min + box.max) / 2;
     if (!is_near(box, centre)) {
       look_at(map * beams.nodes.front().position);
+    } else if (passes_through(beams, map, scale, box)) {
+      is_in = is_out = true;
     } else {
       const auto around = [&](Vec3 p, double radius) {
         for (std::size_t a = 0; a < 3 && !(is_in && is_out); ++a)
@@ -85,6 +96,7 @@ class BeamPlaces {
           around(map * ((1 - t) * beams.nodes[s.from].position + t * beams.nodes[s.to].position),
                  0.7 * scale * ((1 - t) * s.radius_from + t * s.radius_to));
     }
+    ++places_.all;
     places_.crossing += is_in && is_out;
     places_.inside += is_in && !is_out;
   }
@@ -101,12 +113,37 @@ class BeamPlaces {
       return surface.box().intersects(box) && std::fabs(surface.signed_distance(centre)) <= radius;
     });
   }
+  [[nodiscard]] bool passes_through(const eval::BeamsShape& beams, const Affine& map, double scale, const Box3& box) {
+    std::vector<Vec3> near;
+    for (const Vec3 p : edges_)
+      if (box.intersects({p, p})) near.push_back(p);
+    for (const eval::StrutNode& node : beams.nodes)
+      for (const Vec3 p : near)
+        if (norm(p - map * node.position) < scale * node.ball_radius) return true;
+    for (const eval::Strut& s : beams.struts) {
+      const Vec3 from = map * beams.nodes[s.from].position, to = map * beams.nodes[s.to].position;
+      const double length = norm(to - from);
+      const Vec3 axis = (to - from) / length;
+      for (const Vec3 p : near) {
+        const double along = dot(p - from, axis), t = along / length;
+        if (t > 0 && t < 1 && norm(p - from - along * axis) < scale * ((1 - t) * s.radius_from + t * s.radius_to))
+          return true;
+      }
+      for (IntCurvesFace_ShapeIntersector& lines : lines_) {
+        lines.Perform(gp_Lin(to_pnt(from), gp_Dir(axis.x, axis.y, axis.z)), 0, length);
+        if (lines.IsDone() && lines.NbPnt() > 0) return true;
+      }
+    }
+    return false;
+  }
   [[nodiscard]] bool is_inside(Vec3 p) {
     return std::ranges::any_of(solids_,
                                [&](PointInSolid& s) { return s.state(p, Precision::Confusion()) == TopAbs_IN; });
   }
 
   std::deque<PointInSolid> solids_;  // they cannot be moved
+  std::deque<IntCurvesFace_ShapeIntersector> lines_;
+  std::vector<Vec3> edges_;  ///< points of the body's edges, and its vertices
   std::vector<CarrierSurface> surfaces_;
   Places places_;
 };
@@ -117,7 +154,7 @@ std::optional<Places> places_of(const Solids& body, const eval::CellStream& cell
   const auto take = [&](const eval::PlacedCell& cell) {
     const auto shape = of_part == nullptr ? cells.shape(cell, context.sink) : std::nullopt;
     const auto* beams = shape ? std::get_if<eval::BeamsShape>(&shape->value) : of_part;
-    if (beams == nullptr) return false;
+    if (beams == nullptr || context.run.should_stop()) return false;
     places.add(*beams, cell.mapping == CellMapping::conformal ? Affine{} : cell.world_from_cell);
     return true;
   };
@@ -134,7 +171,8 @@ struct GraphSolids {
 
 GraphSolids too_large(std::uint64_t faces) {
   return {{},
-          "a boolean of about " + std::to_string(faces) + " faces takes too long, " + std::to_string(most_graph_faces) +
+          "a boolean of " + std::to_string(faces) + " faces or more takes too long, " +
+              std::to_string(most_graph_faces) +
               " are the most; nodeRadius=\"auto\" takes none in a lattice of boxes side by side"};
 }
 
@@ -165,7 +203,7 @@ GraphSolids graph_solids(const eval::CellStream& cells, const FoldContext& conte
   // Cells that keep apart are placed, not joined.
   if (cells.size() > 1 && 2 * made->body.solids.size() > cells.size())
     return {{}, "the cells keep apart", FusedLimit{}, true};
-  auto solids = solids_from(made->body);
+  auto solids = solids_from(made->body, Edges::as_they_are);
   if (!solids) return {{}, "OpenCASCADE's faces do not enclose what the beams hold", FusedLimit{}, true};
   return {std::move(*solids), {}};
 }
@@ -192,11 +230,12 @@ GraphStep apply_graph(const Solids& body, const eval::CellStream& cells, const F
     const std::string fault = apart.diagnostics().empty() ? "" : ": " + message(apart.diagnostics().front());
     return {{}, "a boolean fails" + fault, few_fused};
   }
+  for (const Diagnostic& d : apart.diagnostics()) context.solid.sink.report(d);
   const auto places = places_of(body, cells, context.solid);
   if (!places) return {};
   const bool is_union = context.apply.operation == ApplyOperation::union_;
   counts.placed += cells.size();
-  counts.kept += is_union ? cells.size() : places->inside + places->crossing;
+  counts.kept += is_union ? places->all : places->inside + places->crossing;
   counts.crossing += places->crossing;
   step->reaches = places->inside + places->crossing > 0;
   return {std::move(step)};

@@ -25,8 +25,10 @@ namespace meso::brep {
 
 /// Solids as plain values, meshed if the options say so. May throw Standard_Failure.
 [[nodiscard]] std::optional<Body> to_body(const Solids& solids, const RealiseOptions& options, DiagnosticSink& sink);
+/// What becomes of edges that touch, or are short: OpenCASCADE's mending divides the ones and takes out the others.
+enum class Edges { mended, as_they_are };
 /// And back, for steps and parts that go on from a body that was put together without booleans. Nothing where they hold
 /// another volume than the body. May throw Standard_Failure.
-[[nodiscard]] std::optional<Solids> solids_from(const Body& body);
+[[nodiscard]] std::optional<Solids> solids_from(const Body& body, Edges edges);
 
 }  // namespace meso::brep
