@@ -56,6 +56,16 @@ class Volumes(unittest.TestCase):
         result = subprocess.run([PYTHON, "-c", program, path], check=True, capture_output=True, text=True)
         return result.stdout.split()
 
+    def test_about_as_many_tetrahedra_as_asked(self):
+        """Also of sheets that a first coarse mesh does not see; where walls are lost, that is told."""
+        for wall, asked, is_coarse in ((1.5, 10000, True), (1.5, 500000, False), (2, 20000, True), (2.5, 500000, False)):
+            words = ["tpms.gyroid", "scale", "5", "shell", str(wall), "-b", "0,0,0,10,10,10", "-o", "a.vtu", "--elements", str(asked)]
+            with self.subTest(words=words):
+                done = subprocess.run([MESO, "sdf", *words], cwd=self.folder, check=True, capture_output=True, text=True)
+                made = int(re.search(r"(\d+) tetrahedra", done.stdout + done.stderr).group(1))
+                self.assertTrue(asked / 1.4 < made < 1.4 * asked, made)
+                self.assertEqual("SDF_COARSE" in done.stderr, is_coarse, done.stderr)
+
     @unittest.skipUnless(HAS_VTK, "VTK is not installed")
     def test_vtk_reads_tetrahedra(self):
         binary = self.read(READ_VTK, self.make("a.vtu", "--elements", "5000"))

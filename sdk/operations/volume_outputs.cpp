@@ -7,6 +7,7 @@
 #include <numbers>
 #include <system_error>
 
+#include "meso/base/number.hpp"
 #include "meso/export_tetra_mesh/write_tet_mesh.hpp"
 #include "meso/implicit/stuffing.hpp"
 #include "meso/import_surface_mesh/read_surface_mesh.hpp"
@@ -25,25 +26,77 @@ bool is_tetrahedra(const std::string& e) { return is_one_of(e, {".vtu", ".msh", 
 bool is_voxels(const std::string& e) { return is_one_of(e, {".nrrd", ".vti", ".h5", ".hdf5"}); }
 bool is_slices(const std::string& e) { return is_one_of(e, {".svg", ".png"}); }
 
-/// Twelve tetrahedra a cube, and a share of the surface that a coarse mesh shows.
-std::optional<double> spacing_for(double elements, const VolumeJob& job) {
-  const Vec3 size = job.box.max - job.box.min;
-  const implicit::BccLattice lattice = implicit::bcc_lattice(job.box, std::cbrt(size.x * size.y * size.z) / 32);
+struct SizedMesh {
+  implicit::BccLattice lattice;
+  TetMesh mesh;
+};
+
+std::optional<SizedMesh> mesh_at(double spacing, const VolumeJob& job, const RunOptions& run) {
+  const implicit::BccLattice lattice = implicit::bcc_lattice(job.box, spacing);
   const auto corners = job.source(job.field, lattice.corners), centres = job.source(job.field, lattice.centres);
   if (!corners || !centres) return std::nullopt;
-  RunOptions run = job.options.run;
-  run.progress = nullptr;  // it would begin anew
-  const auto mesh = implicit::stuff(lattice, *corners, *centres, run, job.sink);
+  auto mesh = implicit::stuff(lattice, *corners, *centres, run, job.sink);
   if (!mesh) return std::nullopt;
-  const double h = lattice.spacing, volume = implicit::tet_quality(*mesh).volume;
-  if (mesh->tets.empty()) return h;
-  const double surface = static_cast<double>(mesh->tets.size()) * h * h - 12 * volume / h;
+  return SizedMesh{lattice, std::move(*mesh)};
+}
+
+/// Which spacing gives so many, if a mesh tells: twelve tetrahedra a cube, and a share of the surface.
+double spacing_for(double elements, const SizedMesh& seen) {
+  const double h = seen.lattice.spacing, volume = implicit::tet_quality(seen.mesh).volume;
+  const double surface = std::max(0.0, static_cast<double>(seen.mesh.tets.size()) * h * h - 12 * volume / h);
   double low = h * 1e-3, high = h * 32;  // more elements at the low end
   for (int i = 0; i < 60; ++i) {
     const double s = std::sqrt(low * high);
     (12 * volume / (s * s * s) + surface / (s * s) > elements ? low : high) = s;
   }
   return low;
+}
+
+/// A mesh that is too coarse for walls does not tell how much they hold, and lattices of some spacings miss more of
+/// them than coarser ones: the spacing is found by steps of at most a half, then between one that gives too few and one
+/// that gives too many, until a mesh has about as many elements as are asked for.
+std::optional<SizedMesh> mesh_of(double elements, const VolumeJob& job) {
+  constexpr int most_steps = 12;
+  constexpr double near = 1.25;  // of the number
+  const Vec3 size = job.box.max - job.box.min;
+  const double volume = size.x * size.y * size.z;
+  RunOptions quiet = job.options.run;
+  quiet.progress = nullptr;  // it would begin anew
+  double spacing = std::cbrt(volume) / std::clamp(std::cbrt(elements / 12), 4.0, 32.0);
+  double too_many = 0, too_few = HUGE_VAL;  // spacings
+  std::optional<SizedMesh> closest;
+  const auto off = [&](const SizedMesh& m) {
+    return std::fabs(std::log((static_cast<double>(m.mesh.tets.size()) + 0.5) / elements));
+  };
+  for (int step = 0; step < most_steps; ++step) {
+    auto seen = mesh_at(spacing, job, quiet);
+    if (!seen) return std::nullopt;
+    const auto count = static_cast<double>(seen->mesh.tets.size());
+    double next = count == 0 ? 0 : spacing_for(elements, *seen);
+    const double here = off(*seen);
+    if (!closest || here < off(*closest)) closest = std::move(seen);
+    if (here < std::log(near)) break;
+    (count < elements ? too_few : too_many) = spacing;
+    // Nothing is there at eight cubes for each element that is asked for: nothing is there, or it takes more elements.
+    if (count == 0 && volume / (spacing * spacing * spacing) > 8 * elements) break;
+    next = std::max(next, spacing / 2);
+    if (too_many > 0 && too_few < HUGE_VAL && !(too_many < next && next < too_few))
+      next = std::sqrt(too_many * too_few);
+    if (implicit::bcc_lattice(job.box, next).cells == implicit::bcc_lattice(job.box, spacing).cells) break;
+    spacing = next;
+  }
+  return closest;
+}
+
+/// Twice the volume over the area that is not in the box's faces, in which cuts count for nothing.
+double thickness_of(const TetMesh& mesh, double volume) {
+  double area = 0;
+  for (const TetMesh::Face& face : mesh.boundary) {
+    if (face.side != TetMesh::Side::surface) continue;
+    const auto [a, b, c] = mesh.corners(face);
+    area += norm(cross(mesh.points[b] - mesh.points[a], mesh.points[c] - mesh.points[a])) / 2;
+  }
+  return area > 0 ? 2 * volume / area : HUGE_VAL;
 }
 
 double spacing_of_samples(const VolumeJob& job) {
@@ -54,29 +107,30 @@ double spacing_of_samples(const VolumeJob& job) {
 }  // namespace
 
 bool write_tetrahedra(VolumeJob& job) {
-  const auto spacing = job.options.elements ? spacing_for(*job.options.elements, job) : spacing_of_samples(job);
-  if (!spacing) return false;
-  const implicit::BccLattice lattice = implicit::bcc_lattice(job.box, *spacing);
-  const auto corners = job.source(job.field, lattice.corners), centres = job.source(job.field, lattice.centres);
-  if (!corners || !centres) return false;
-  const auto mesh = implicit::stuff(lattice, *corners, *centres, job.options.run, job.sink);
-  if (!mesh) return false;
+  const auto made = job.options.elements ? mesh_of(*job.options.elements, job)
+                                         : mesh_at(spacing_of_samples(job), job, job.options.run);
+  if (!made) return false;
+  const auto& [lattice, mesh] = *made;
   const TetFormat format = job.options.ascii ? TetFormat::vtu_ascii : *tet_format_of(job.path);
   auto file = OutputFile::create(job.path, job.options.existing, job.sink);
   if (!file) return false;
   const std::size_t errors = job.sink.error_count();
-  const bool written = write_tet_mesh(*mesh, format, *file, job.options.run, job.sink);
+  const bool written = write_tet_mesh(mesh, format, *file, job.options.run, job.sink);
   if (job.sink.error_count() > errors || !file->commit(job.sink) || !written) return false;
-  const implicit::TetQuality quality = implicit::tet_quality(*mesh);
+  const implicit::TetQuality quality = implicit::tet_quality(mesh);
   constexpr double degree = std::numbers::pi / 180;
-  job.report.tetrahedra = {.elements = mesh->tets.size(),
-                           .points = mesh->points.size(),
+  job.report.tetrahedra = {.elements = mesh.tets.size(),
+                           .points = mesh.points.size(),
                            .spacing = lattice.spacing,
                            .volume = quality.volume,
                            .min_dihedral_degrees = quality.min_dihedral / degree,
                            .max_dihedral_degrees = quality.max_dihedral / degree};
   job.report.cells = lattice.cells;
-  if (mesh->tets.empty()) job.sink.report({.code = Code::sdf_empty, .args = {job.path}});
+  if (mesh.tets.empty()) {
+    job.sink.report({.code = Code::sdf_empty, .args = {job.path}});
+  } else if (const double thickness = thickness_of(mesh, quality.volume); thickness < lattice.spacing) {
+    job.sink.report({.code = Code::sdf_coarse, .args = {format_number(thickness), format_number(lattice.spacing)}});
+  }
   return true;
 }
 
