@@ -36,7 +36,7 @@ DOCUMENTS = {
     "library_cells": "0.1mm", "list_of_places": "0.3mm", "offset_lattice": "0.1mm", "orient_along_vector": "0.2mm", "parameters": "0.3mm",
     "parts_of_parts": "0.2mm", "polar": "0.4mm", "radius_at_nodes": "0.1mm", "rotate_step_by_step": "0.25mm",
     "sandwich_panel": "0.1mm", "spherical": "1mm", "truss_of_trusses": "0.1mm",
-    "turned_pulley": "0.2mm",
+    "turned_lattice": "0.1mm", "turned_pulley": "0.2mm",
 }
 CUTS = {"parts_of_parts": ("--cut", "y=8mm")}
 # Cells that are functions have no exact picture.
