@@ -134,6 +134,12 @@ std::optional<CheckedDocument> Run::open(const std::string& file) {
   return open_checked_document(file, options_.value_or(RunOptions{}), sink);
 }
 
+/// What is for information alone wants none, but for what makes minutes out of seconds.
+static bool wants_help(const Diagnostic& d) {
+  return severity(d) != Severity::info || d.code == Code::geometry_not_repeatable ||
+         d.code == Code::geometry_struts_meet;
+}
+
 void Run::print_diagnostics(Told what) {
   const auto& all = sink.diagnostics();
   const bool is_over = what == Told::all;
@@ -142,8 +148,7 @@ void Run::print_diagnostics(Told what) {
   for (; printed_ < all.size() && may_be_told(all[printed_]); ++printed_) {
     const Diagnostic& d = all[printed_];
     fmt::print(stderr, "{}\n", render(d));
-    if (severity(d) != Severity::info && helped_.insert(d.code).second)
-      fmt::print(stderr, "  help: {}\n", help(d.code));
+    if (wants_help(d) && helped_.insert(d.code).second) fmt::print(stderr, "  help: {}\n", help(d.code));
   }
   if (is_over && sink.truncated()) fmt::print(stderr, "... and more: {} errors in all\n", sink.error_count());
 }
