@@ -15,7 +15,8 @@ constexpr double same_corner = 1e-6;     // of the ball, between points that are
 constexpr double same_turn = 1e-7;       // radians
 constexpr double curve_accuracy = 3e-8;  // of the ball, between a curve and what it is laid through
 constexpr std::size_t most_spans = 2000;
-constexpr double least_span = 1e-7, most_span = 1;  // radians
+/// Radians. Through longer spans OpenCASCADE lays its curves in the surface a ten-thousandth of a millimetre beside.
+constexpr double least_span = 1e-7, most_span = 0.5;
 
 Vec3 unit(Vec3 v) { return v / norm(v); }
 
