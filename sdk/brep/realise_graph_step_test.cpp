@@ -106,6 +106,27 @@ TEST_F(GraphStepTest, WhatACylinderLeavesOfALattice) {
   EXPECT_NEAR(measure(made->body).volume, truth, 5e-3 * truth);
 }
 
+TEST_F(GraphStepTest, CellsThatThinAndSmallBodiesCrossAreCounted) {
+  const std::string plate = macrostructure("<box x='1.3' dx='0.05' dy='8' dz='4'/>"),
+                    speck = macrostructure("<box x='1.2' y='1.2' z='1.2' dx='0.05' dy='0.05' dz='0.05'/>");
+  const auto cut = realised(plate + document(at_nodes, "<apply pattern='c' operation='difference'/>"));
+  ASSERT_TRUE(cut);
+  EXPECT_LT(measure(cut->body).volume, 0.05 * 8 * 4);
+  EXPECT_EQ(cut->cells.kept, 2u);
+  EXPECT_EQ(cut->cells.crossing, 2u);
+  const auto within = realised(speck + document(at_nodes, cut_to));
+  ASSERT_TRUE(within);
+  EXPECT_NEAR(measure(within->body).volume, 0.05 * 0.05 * 0.05, 1e-9);
+  EXPECT_EQ(within->cells.kept, 1u);
+}
+
+TEST_F(GraphStepTest, AUnionKeepsTheCellsThatThePatternHas) {
+  const auto made = realised(macrostructure("<box dx='8' dy='8' dz='1'/>") +
+                             document(at_nodes + "<when test='i == j'/>", "<apply pattern='c' operation='union'/>"));
+  ASSERT_TRUE(made);
+  EXPECT_EQ(made->cells.kept, 2u);
+}
+
 // V(M n L) + V(M - L) = V(M); V(M u L) = V(M - L) + V(L), where L is put together without a boolean.
 TEST_F(GraphStepTest, UnionAndDifferenceAddUp) {
   const std::string body = macrostructure("<box x='1' y='1' z='-1' dx='5' dy='6' dz='3.5'/>");
