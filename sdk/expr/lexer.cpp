@@ -25,6 +25,28 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 27> foreign 
     {"³", "^3"},   {"√", "sqrt(x)"}, {"π", "pi"},  {"°", "deg"},       {"µ", "u"},   {"μ", "u"},
 }};
 
+/// Units as they are spelled in full.
+constexpr std::array<std::pair<std::string_view, std::string_view>, 18> spelled = {{
+    {"micrometer", "um"},
+    {"micrometre", "um"},
+    {"micron", "um"},
+    {"millimeter", "mm"},
+    {"millimetre", "mm"},
+    {"centimeter", "cm"},
+    {"centimetre", "cm"},
+    {"meter", "m"},
+    {"meters", "m"},
+    {"metre", "m"},
+    {"inch", "in"},
+    {"inches", "in"},
+    {"foot", "ft"},
+    {"feet", "ft"},
+    {"degree", "deg"},
+    {"degrees", "deg"},
+    {"radian", "rad"},
+    {"radians", "rad"},
+}};
+
 /// The character at the front of `text`, whole if it is UTF-8; \xNN for what cannot be shown.
 std::string show_character(std::string_view text, std::size_t& length) {
   const auto first = static_cast<unsigned char>(text[0]);
@@ -43,6 +65,14 @@ std::string show_character(std::string_view text, std::size_t& length) {
 std::string suggestion(std::string_view word, std::span<const std::string_view> candidates) {
   const std::string_view near = nearest(word, candidates);
   return near.empty() ? "" : "; did you mean '" + std::string(near) + "'?";
+}
+
+std::string unit_suggestion(std::string_view word) {
+  if (std::string near = suggestion(word, suffix_names()); !near.empty()) return near;
+  std::array<std::string_view, spelled.size()> names;
+  std::ranges::transform(spelled, names.begin(), [](const auto& s) { return s.first; });
+  const auto* const found = std::ranges::find(spelled, nearest(word, names), [](const auto& s) { return s.first; });
+  return found == spelled.end() ? "" : "; did you mean '" + std::string(found->second) + "'?";
 }
 
 char Lexer::peek() {
@@ -77,8 +107,7 @@ std::optional<Token> Lexer::number() {
 
   const std::optional<Suffix> suffix = unit.empty() ? Suffix::none : find_suffix(unit);
   if (!suffix)
-    return fail(Code::expression_unknown_unit, unit_begin, unit.size(),
-                {std::string(unit), suggestion(unit, suffix_names())});
+    return fail(Code::expression_unknown_unit, unit_begin, unit.size(), {std::string(unit), unit_suggestion(unit)});
   const std::optional<double> value = literal_value(decimal, *suffix, unit_);
   const std::string_view whole = text_.substr(at_, end - at_);
   if (!value) return fail(Code::expression_number_range, at_, whole.size(), {std::string(whole)});

@@ -52,5 +52,7 @@ class Lexer {
 
 /// "; did you mean 'floor'?" or nothing: the tail of messages about unknown words.
 [[nodiscard]] std::string suggestion(std::string_view word, std::span<const std::string_view> candidates);
+/// The same for a word where a unit stands: "; did you mean 'mm'?" for "milimeter", too.
+[[nodiscard]] std::string unit_suggestion(std::string_view word);
 
 }  // namespace meso::expr

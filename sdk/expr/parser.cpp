@@ -259,7 +259,10 @@ bool Parser::reject_after_value() {
   const bool bare_number = previous_.kind == TokenKind::number && !previous_.has_unit;
   if (bare_number && token_.kind == TokenKind::name && find_suffix(token_.text))
     return fail_at(token_, Code::expression_unit_apart, {std::string(token_.text)});
-  return fail_at(token_, Code::expression_missing_operator, {shown(token_)});
+  // A letter or two are more often a name than a mistyped unit.
+  const bool maybe_unit = bare_number && token_.kind == TokenKind::name && token_.text.size() > 2;
+  return fail_at(token_, Code::expression_missing_operator,
+                 {shown(token_) + (maybe_unit ? unit_suggestion(token_.text) : "")});
 }
 
 bool Parser::advance() {

@@ -212,6 +212,9 @@ TEST(ParserFaults, UnitsAndRanges) {
   EXPECT_EQ(fault("2x"), "UNKNOWN_UNIT at 1+1 [x] []");
   EXPECT_EQ(fault("2e"), "UNKNOWN_UNIT at 1+1 [e] []");
   EXPECT_EQ(fault("0x10"), "UNKNOWN_UNIT at 1+3 [x10] []");
+  EXPECT_EQ(fault("5milimeter"), "UNKNOWN_UNIT at 1+9 [milimeter] [; did you mean 'mm'?]");
+  EXPECT_EQ(fault("5inch"), "UNKNOWN_UNIT at 1+4 [inch] [; did you mean 'in'?]");
+  EXPECT_EQ(fault("10 degrees"), "MISSING_OPERATOR at 3+7 ['degrees'; did you mean 'deg'?]");
   EXPECT_EQ(fault("10 mm"), "UNIT_APART at 3+2 [mm]");
   EXPECT_EQ(fault("10mm mm"), "MISSING_OPERATOR at 5+2 ['mm']");
   EXPECT_EQ(fault("1 + 1e999"), "NUMBER_RANGE at 4+5 [1e999]");

@@ -47,7 +47,8 @@ void check_beam(Context& c, const BeamsBody& body, const NodeTable& nodes, const
   if (from != nullptr && from == to)
     c.report(Code::beam_same_node, beam, "to", {beam.from.text});
   else if (from != nullptr && to != nullptr && is_same_point(c, *from, *to))
-    c.report(Code::body_degenerate, beam, "", {"both nodes are the same point"});
+    c.report(Code::body_degenerate, beam, "",
+             {"its nodes '" + beam.from.text + "' and '" + beam.to.text + "' are the same point"});
   const bool has_common = beam.radius || body.radius;
   if (!has_common && !beam.radius1)
     c.report(Code::beam_without_radius, beam, "", {"'" + beam.from.text + "'"});

@@ -33,6 +33,17 @@ std::string Context::suggestion(std::string_view word, std::span<const std::stri
   return best.empty() ? std::string() : "; did you mean '" + std::string(best) + "'?";
 }
 
+std::string Context::suggestion_or_list(std::string_view word, std::span<const std::string_view> candidates,
+                                        std::string_view plural) const {
+  std::string text = suggestion(word, candidates);
+  constexpr std::size_t most_listed = 12;
+  if (!text.empty() || is_full() || candidates.size() > most_listed) return text;
+  if (candidates.empty()) return "; it has none";
+  for (const std::string_view name : candidates)
+    text += (text.empty() ? "; its " + std::string(plural) + ": " : std::string(", ")) + std::string(name);
+  return text;
+}
+
 void Context::report(Code code, const Element& element, std::string_view attribute, std::vector<std::string> args,
                      std::size_t offset, std::size_t length) {
   if (is_full()) return sink_.report({.code = code});  // only counted: finding the place costs time

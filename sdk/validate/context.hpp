@@ -105,6 +105,9 @@ class Context {
 
   /// "; did you mean 'core'?" or nothing.
   [[nodiscard]] std::string suggestion(std::string_view word, std::span<const std::string_view> candidates) const;
+  /// The same, or all candidates where they are few and none is near: "; its parameters: core, wall".
+  [[nodiscard]] std::string suggestion_or_list(std::string_view word, std::span<const std::string_view> candidates,
+                                               std::string_view plural) const;
   /// The sink takes no more: costly words can be saved.
   [[nodiscard]] bool is_full() const { return sink_.truncated(); }
 

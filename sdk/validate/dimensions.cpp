@@ -182,7 +182,7 @@ class DimensionCheck {
   explicit DimensionCheck(Context& c) : c_(c) {}
 
   void run() {
-    for (const Parameter& p : c_.document.parameters) names_.own[p.id.text] = parameter(p, p.id.text, names_);
+    for (const Parameter& p : c_.document.parameters) visit_parameter(p);
     for (const CoordinateSystem& system : c_.document.coordinate_systems) visit(system);
     for (const Macrostructure& m : c_.document.macrostructures) visit(m);
     for (const VectorField& field : c_.document.vector_fields) visit_field(field);
@@ -199,8 +199,15 @@ class DimensionCheck {
     const auto report = [this](Code code, const Element& owner, std::string_view attribute,
                                std::vector<std::string> args, std::size_t offset, std::size_t length) {
       c_.report(code, owner, attribute, std::move(args), offset, length);
+      has_fault_ = true;
     };
     return DimensionWalk(c_, names, report);
+  }
+  /// A parameter at fault has no value, nor has what is computed from it: no consequence of the fault is told.
+  void visit_parameter(const Parameter& p) {
+    has_fault_ = false;
+    names_.own[p.id.text] = parameter(p, p.id.text, names_);
+    if (has_fault_ || !c_.constant(p.value)) c_.values.erase(p.id.text);
   }
   template <class E>
   void visit(const E& element) {
@@ -297,6 +304,7 @@ class DimensionCheck {
   Context& c_;
   Dimensions names_;
   std::map<const UnitCell*, Dimensions> cells_;
+  bool has_fault_ = false;
 };
 
 }  // namespace

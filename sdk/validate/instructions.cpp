@@ -75,7 +75,7 @@ class InstructionCheck {
     std::vector<std::string_view> candidates;
     for (const CellParameter& p : cell_->parameters) candidates.push_back(p.name.text);
     c_.report(Code::link_unknown_parameter, e, "parameter",
-              {cell_->id.text, e.parameter.text, c_.suggestion(e.parameter.text, candidates)});
+              {cell_->id.text, e.parameter.text, c_.suggestion_or_list(e.parameter.text, candidates, "parameters")});
   }
   ///
   void check_at(const SetInstruction& e) {

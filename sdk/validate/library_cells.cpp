@@ -66,7 +66,8 @@ std::vector<CellParameter> joined(Context& c, const UnitCell& cell, const UnitCe
     const auto found = std::ranges::find(all, own.name.text, [](const CellParameter& p) { return p.name.text; });
     if (found == all.end()) {
       c.report(Code::link_unknown_parameter, own, "id",
-               {cell.library->text, own.name.text, c.suggestion(own.name.text, names_of(named.parameters))});
+               {cell.library->text, own.name.text,
+                c.suggestion_or_list(own.name.text, names_of(named.parameters), "parameters")});
       continue;
     }
     const auto index = static_cast<std::size_t>(found - all.begin());

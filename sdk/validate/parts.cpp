@@ -50,7 +50,8 @@ void check_apply(Context& c, const Apply& apply) {
   if (apply.pattern.has_value() == apply.part.has_value())
     c.report(Code::choice_needed, apply, "", {"pattern and part", apply.pattern ? "both" : "none"});
   if (apply.pattern && !apply.part && apply.placement)
-    c.report(Code::attribute_ineffective, *apply.placement, "", {"a placement", "on a pattern"});
+    c.report(Code::attribute_ineffective, *apply.placement, "",
+             {"a placement", "on a pattern: the pattern's coordinateSystem places it"});
   else
     check_placement(c, apply.placement, c.parameters);
   if (c.check(apply, "clearance", apply.clearance, c.parameters))

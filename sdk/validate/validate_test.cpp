@@ -114,6 +114,24 @@ TEST(Dimensions, SayWhichTwoDoNotMeet) {
   EXPECT_THAT(told[0].args, ElementsAre("5mm", "a length", "3deg", "an angle"));
 }
 
+TEST(Dimensions, NoConsequenceOfAClashIsTold) {
+  const auto told = faults(parameters(R"-(<parameter id="a" value="5.2mm + 3deg"/><parameter id="b" value="a/2"/>)-") +
+                           R"(<unitCells><unitCell id="u"><csg><sphere radius="1"/></csg></unitCell></unitCells>)"
+                           R"(<patterns><pattern id="p" unitCell="u"><loop index="i" axis="x" count="b" spacing="1"/>)"
+                           R"(</pattern></patterns>)");
+  ASSERT_THAT(told, SizeIs(1));
+  EXPECT_EQ(told[0].code, Code::expression_units);
+}
+
+TEST(Links, ListTheParametersOfACellWhereNoneIsNear) {
+  const auto told = faults(
+      R"(<unitCells><unitCell id="u"><parameter id="wall" value="1"/><csg><sphere radius="wall"/></csg></unitCell></unitCells>)"
+      R"(<patterns><pattern id="p" unitCell="u"><loop index="i" axis="x" count="1" spacing="1"/>)"
+      R"(<set parameter="strutRadius" value="1" at="cell"/></pattern></patterns>)");
+  ASSERT_THAT(told, SizeIs(1));
+  EXPECT_THAT(told[0].args, ElementsAre("u", "strutRadius", "; its parameters: wall"));
+}
+
 TEST(Dimensions, SayWhatIsAskedFor) {
   const auto told = faults(parameters(R"(<parameter id="t" value="4deg"/>)") +
                            R"(<macrostructures><macrostructure id="m"><csg><sphere radius=" t + 1 "/></csg>)"

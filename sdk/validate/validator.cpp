@@ -17,13 +17,13 @@ std::optional<CheckedDocument> Validator::run(Document document, SourceMap sourc
   check_links(c);
   check_cycles(c);
   check_parameters(c);
+  check_dimensions(c);
   check_coordinate_systems(c);
   check_macrostructures(c);
   check_unit_cells(c);
   check_fields(c);
   check_patterns(c);
   check_parts(c);
-  check_dimensions(c);
   if (sink.error_count() != errors_before) return std::nullopt;
   return CheckedDocument(std::make_shared<const Document>(std::move(document)),
                          std::make_shared<const SourceMap>(std::move(source)), std::move(resources));

@@ -55,6 +55,12 @@ TEST(Read, ReportsIndependentFaultsInTheOrderOfTheFile) {
   EXPECT_EQ(o.diagnostics[3].code, Code::attribute_unknown);
 }
 
+TEST(Read, AMistypedAttributeIsNotMissingAsWell) {
+  const Outcome o = read(in_meso("<build><item prat=\"a\"/></build>"));
+  ASSERT_EQ(o.diagnostics.size(), 1U) << all_of(o.diagnostics);
+  EXPECT_EQ(o.diagnostics[0].code, Code::attribute_unknown);
+}
+
 TEST(Read, KnowsUnitsThatAreWrittenShort) {
   const Outcome o = read("<meso xmlns=\"urn:meso-format:1.0\" version=\"1.0\" unit=\"mm\"/>");
   ASSERT_EQ(o.diagnostics.size(), 1U) << all_of(o.diagnostics);

@@ -15,9 +15,7 @@ namespace {
 
 std::string named(std::string_view text) { return std::string(text); }
 
-std::string suggestion(std::string_view word, const std::vector<std::string_view>& candidates, std::string_view open,
-                       std::string_view close) {
-  const std::string_view meant = expr::nearest(word, candidates);
+std::string suggestion(std::string_view meant, std::string_view open, std::string_view close) {
   if (meant.empty()) return {};
   return "; did you mean " + named(open) + named(meant) + named(close) + "?";
 }
@@ -137,6 +135,7 @@ void ElementScope::report_value(const ScannedAttribute& attribute, Code code, st
 
 void ElementScope::check_attributes() {
   const std::string_view element = reading_.element(node_).name.local();
+  std::set<std::string_view> meant;  // by a mistyped name: not missing as well
   for (std::uint32_t i = 0; i < reading_.element(node_).attribute_count && !reading_.full(); ++i) {
     const ScannedName& name = reading_.attribute(node_, i).name;
     const auto& known = shape_.attributes;
@@ -145,12 +144,14 @@ void ElementScope::check_attributes() {
     if (name.space != no_namespace && name.space != format_namespace) continue;
     std::vector<std::string_view> names;
     for (const AttributeShape& a : known) names.push_back(a.name);
+    const std::string_view near = expr::nearest(name.text, names);
+    meant.insert(near);
     reading_.report(Code::attribute_unknown, path_ + "/@" + named(name.text), name.text,
-                    {named(element), named(name.text), suggestion(name.text, names, "'", "'")});
+                    {named(element), named(name.text), suggestion(near, "'", "'")});
   }
   pugi::xml_attribute tree;
   for (const AttributeShape& a : shape_.attributes) {
-    if (a.required && find_attribute(a.name, tree) == nullptr)
+    if (a.required && !meant.contains(a.name) && find_attribute(a.name, tree) == nullptr)
       reading_.report_tag(Code::attribute_missing, path_, node_, {named(element), named(a.name)});
   }
 }
@@ -223,8 +224,9 @@ void ElementScope::report_unknown(const Node& child) {
   for (const Slot& s : shape_.slots)
     for (const Alternative& a : s.alternatives) names.push_back(a.name);
   const std::string_view name = reading_.element(child).name.local();
-  reading_.report_tag(Code::element_unknown, path_ + "/" + named(name), child,
-                      {named(name), named(reading_.element(node_).name.local()), suggestion(name, names, "<", ">")});
+  reading_.report_tag(
+      Code::element_unknown, path_ + "/" + named(name), child,
+      {named(name), named(reading_.element(node_).name.local()), suggestion(expr::nearest(name, names), "<", ">")});
 }
 
 }  // namespace meso::xml
