@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "closest_point.hpp"
+#include "meso/mesh/closest_point.hpp"
 
 #include <gtest/gtest.h>
 

@@ -6,7 +6,7 @@
 #include <cstring>
 #include <ranges>
 
-#include "closest_point.hpp"
+#include "meso/mesh/closest_point.hpp"
 #include "tree_builder.hpp"
 
 namespace meso::implicit {

@@ -102,6 +102,20 @@ TEST_F(DeepVerify, DroppingWhatIsNotThereHidesNothing) {
   EXPECT_TRUE(std::ranges::count(found, "points misjudged"));
 }
 
+// Around a point of a cylinder, close to where the next one touches it, everything is inside one of both.
+TEST_F(DeepVerify, CylindersThatTouchInLines) {
+  std::ofstream(file_)
+      << "<meso xmlns='urn:meso-format:1.0' version='1.0' unit='millimeter'><unitCells><unitCell id='u'>"
+         "<csg><cylinder x1='0' y1='0' z1='-5' x2='0' y2='0' z2='5' radius='1'/></csg></unitCell>"
+         "</unitCells><patterns><pattern id='c' unitCell='u'><loop index='i' axis='x' count='4' "
+         "spacing='2'/></pattern></patterns><parts><part id='p'><apply pattern='c' "
+         "operation='union'/></part></parts></meso>";
+  EXPECT_EQ(failures([](brep::Body&) {}, 300'000), Names{});
+  EXPECT_EQ(figures_.solids, 4u);
+  const Names found = failures([](brep::Body& body) { body.solids.pop_back(); }, 300'000);
+  EXPECT_TRUE(std::ranges::count(found, "points misjudged"));
+}
+
 TEST_F(DeepVerify, WhatPointsCannotTellIsNoted) {
   write("<cylinder x1='0' y1='0' z1='0' x2='20' y2='0' z2='0' radius='0.5'/>", "fragments='drop'");
   EXPECT_EQ(failures([](brep::Body&) {}), Names{});

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "closest_point.hpp"
+#include "meso/mesh/closest_point.hpp"
 
 #include <algorithm>
 
-namespace meso::implicit {
+namespace meso {
 namespace {
 
 /// The point of the segment from 0 to `edge` that is nearest to p. No division by zero; 0 where the segment is a point.
@@ -54,4 +54,4 @@ Vec3 to_closest_point(const Triangle& t, Vec3 p) {
   return -from_best;
 }
 
-}  // namespace meso::implicit
+}  // namespace meso

@@ -5,8 +5,8 @@
 
 #include "meso/base/triangle_stream.hpp"
 
-namespace meso::implicit {
+namespace meso {
 
 [[nodiscard]] Vec3 to_closest_point(const Triangle& t, Vec3 p);
 
-}  // namespace meso::implicit
+}  // namespace meso
