@@ -417,23 +417,31 @@ double Making::triangles_of_finer(double distance) const {
                    std::min(grid_triangles_ * all * all, most_triangles));
 }
 
-// What the planes of triangles promise is measured; where it does not hold, once more from the start with less.
+// What the planes of triangles promise is measured; where it does not hold, once more from the start with less. A mesh
+// that is too far before anything is taken away comes no closer by that.
 bool Making::simplify() {
   const TriangleMesh whole = std::move(out_.mesh);
-  double bound = options_.simplify;
+  const auto distance_of = [&](const TriangleMesh& mesh) {
+    measure(mesh, false, options_.simplify);
+    refinable_->measure_creases(options_.simplify);
+    return refinable_->distance();
+  };
+  double bound = options_.simplify, before = 0;
   for (int attempt = 0; attempt < 6; ++attempt) {
     run_.report("simplifying", attempt / 6.0);
     TriangleMesh mesh = whole;
     if (!simplify_mesh(mesh, out_.grid.box, bound, run_)) return go_on();
-    measure(std::move(mesh), false, options_.simplify);
+    out_.distance = distance_of(mesh);
     if (!go_on()) return false;
-    out_.distance = refinable_->distance();
     out_.mesh = refinable_->take();
     if (out_.distance <= options_.simplify) return true;
+    if (attempt == 0 && (before = distance_of(whole)) > options_.simplify) break;
     bound *= std::clamp(0.95 * options_.simplify / out_.distance, 0.2, 0.6);
   }
-  diagnostics_.report(
-      {.code = Code::tolerance_not_reached, .args = {format_number(out_.distance), format_number(options_.simplify)}});
+  if (!go_on()) return false;
+  const bool is_grid = before > options_.simplify && options_.tolerance == 0;
+  diagnostics_.report({.code = is_grid ? Code::simplify_from_coarse : Code::tolerance_not_reached,
+                       .args = {format_number(is_grid ? before : out_.distance), format_number(options_.simplify)}});
   return true;
 }
 

@@ -7,9 +7,11 @@
 #include <bit>
 #include <cstring>
 #include <span>
+#include <tuple>
 #include <vector>
 
 #include "layout.hpp"
+#include "meso/base/vec.hpp"
 
 namespace meso::implicit {
 
@@ -36,18 +38,33 @@ struct Feature {
   std::uint32_t vertex = 0;  ///< counted from the brick's first
 };
 
+/// Where a feature's sharp edge goes on into another brick: a side of its loop, and the feature.
+struct BorderSide {
+  std::uint32_t row = 0;  ///< of the feature
+  std::uint16_t cell = 0;
+  std::uint8_t edge = 0, next = 0;  ///< of the cell: between these the side runs
+  Vec3 vertex, from, normal;        ///< the feature's; the point on `edge`, and the field's normal there
+  [[nodiscard]] auto place() const { return std::tuple(row, cell, edge); }
+};
+
+/// Whether two features on both sides of a face between bricks may be joined: not if that turns a triangle, and the
+/// side between them does not.
+[[nodiscard]] bool joins_well(const BorderSide& lower, const BorderSide& upper, double least);
+
 struct BrickRecord {
   std::vector<std::uint16_t> signs;  ///< row after row: RowCounts, then crossings or words
   std::size_t last_plane = 0;        ///< where in `signs` it begins
   std::uint64_t vertices = 0;
   std::uint64_t last_plane_vertices = 0;
   std::uint64_t undefined = 0;
+  std::uint64_t inside = 0;  ///< nodes
   std::vector<JoinedCell> joined;
-  std::vector<Feature> features;  ///< by row, cell and loop
+  std::vector<Feature> features;    ///< by row, cell and loop
+  std::vector<BorderSide> borders;  ///< by place
 
   [[nodiscard]] std::uint64_t bytes() const {
     return signs.capacity() * sizeof signs[0] + joined.capacity() * sizeof joined[0] +
-           features.capacity() * sizeof features[0];
+           features.capacity() * sizeof features[0] + borders.capacity() * sizeof borders[0];
   }
 };
 

@@ -208,7 +208,7 @@ std::optional<ContourReport> Contouring::run() {
   report.triangles = triangles_;
   // Every edge lies in two triangles: there are 3/2 as many edges as triangles.
   report.euler = static_cast<std::int64_t>(report.points) - static_cast<std::int64_t>(report.triangles / 2);
-  for (const BrickRecord& record : records_) report.undefined += record.undefined;
+  for (const BrickRecord& record : records_) report.undefined += record.undefined, report.inside += record.inside;
   return report;
 }
 

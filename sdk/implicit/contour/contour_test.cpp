@@ -87,6 +87,15 @@ TEST(Contour, FillsTheBoxExactly) {
   EXPECT_EQ(audit.points, 5u * 64 * 65 - 3u * 62 * 63);  // the nodes on the box
 }
 
+TEST(Contour, TellsHowThickTheInsideIs) {
+  for (const double radius : {0.41, 0.73}) {
+    const auto report = contour_of(FunctionSource(cube(50), [radius](Vec3 p) { return norm(p) - radius; })).report;
+    const double h = 2.0 / 49;
+    EXPECT_NEAR(static_cast<double>(report.inside) * std::pow(h / radius, 3), 4.0 / 3 * std::numbers::pi, 0.05);
+    EXPECT_NEAR(report.cells_thick() * h, 2 * radius / 3, 0.06 * radius);
+  }
+}
+
 TEST(Contour, IsEmptyOutside) {
   const Result result = contour_of(FunctionSource(cube(7), [](Vec3) { return 0.0; }));
   EXPECT_TRUE(result.mesh.triangles.empty());

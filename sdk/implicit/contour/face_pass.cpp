@@ -21,6 +21,7 @@ bool crossed(unsigned inside, unsigned edge) {
 FacePass::FacePass(const Layout& layout, const MeshSink& sink)
     : layout_(layout),
       sink_(sink),
+      least_facing_(layout.least_facing()),
       advance_(256),
       planes_{SignPlane(layout), SignPlane(layout)},
       cells_(layout.nx + 1),

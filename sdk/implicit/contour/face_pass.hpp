@@ -47,6 +47,8 @@ class FacePass {
                   const std::array<std::uint32_t, 13>& ids);
   [[nodiscard]] std::optional<std::uint32_t> feature_across(unsigned face, std::uint8_t edge, const Feature& feature,
                                                             std::size_t j, std::size_t k) const;
+  [[nodiscard]] bool joins_well_across(unsigned face, std::uint8_t edge, const Feature& feature, const Feature& other,
+                                       const BrickRecord& beyond) const;
   void number_y(SignPlane& plane, std::size_t j, std::vector<std::uint32_t>& to);
   void number_z(std::size_t j, std::size_t k, std::vector<std::uint32_t>& to);
   void number_row_on_box(const std::uint64_t* p, const std::uint64_t* q, const RowNumbers& row, std::uint32_t next,
@@ -62,6 +64,7 @@ class FacePass {
 
   const Layout& layout_;
   const MeshSink& sink_;
+  double least_facing_;
   const CaseTable& table_ = CaseTable::get();
   std::vector<Advance> advance_;
   SignPlane planes_[2];

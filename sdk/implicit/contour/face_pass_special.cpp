@@ -84,7 +84,23 @@ std::optional<std::uint32_t> FacePass::feature_across(unsigned face, std::uint8_
     return (f.edges & edges) == edges;
   };
   if (has_whole(feature, face) && has_whole(*found, face ^ 1U)) return std::nullopt;
+  if (brick.record != brick_->record && !joins_well_across(face, edge, feature, *found, *brick.record))
+    return std::nullopt;
   return brick.first_vertex + found->vertex;
+}
+
+bool FacePass::joins_well_across(unsigned face, std::uint8_t edge, const Feature& feature, const Feature& other,
+                                 const BrickRecord& beyond) const {
+  const auto side_at = [](const BrickRecord& record, const Feature& f, std::uint8_t e) {
+    const auto wanted = std::tuple(f.row, f.cell, e);
+    const auto found = std::lower_bound(record.borders.begin(), record.borders.end(), wanted,
+                                        [](const BorderSide& b, const auto& w) { return b.place() < w; });
+    return found != record.borders.end() && found->place() == wanted ? &*found : nullptr;
+  };
+  const BorderSide* const own = side_at(*brick_->record, feature, edge);
+  const BorderSide* const its = own ? side_at(beyond, other, table_.mirrored(own->next, face / 2)) : nullptr;
+  if (its == nullptr) return true;
+  return face % 2 == 1 ? joins_well(*own, *its, least_facing_) : joins_well(*its, *own, least_facing_);
 }
 
 // Each loop with a feature is a fan around it. Where a sharp edge goes on into the next cell, the side of the two fans

@@ -72,9 +72,13 @@ const std::vector<FeatureFinder::Found>& FeatureFinder::find(BrickCrossings& cro
     }
   for (const double share : {0.3, 0.05, 0.008, 0.0016}) approach(points, share, sampler, go_on);
   if (!go_on()) return found_;
+  // Where the rounds do not settle, the field has more folds than there are samples to tell.
+  std::erase_if(candidates_, [&](const Candidate& c) {
+    return !c.sharp || !within_reach(c) || std::max(c.moved, c.off) > 1e-3 * grid_.spacing(0);
+  });
+  reject_turning(points, first, last);
+  keep_borders(points, first, last);
   for (const Candidate& c : candidates_) {
-    // Where the rounds do not settle, the field has more folds than there are samples to tell.
-    if (!c.sharp || !within_reach(c) || std::max(c.moved, c.off) > 1e-3 * grid_.spacing(0)) continue;
     Vec3 position = c.position;
     for (std::size_t axis = 0; axis < 3; ++axis)
       position[axis] = std::clamp(position[axis], grid_.box.min[axis], grid_.box.max[axis]);
@@ -123,7 +127,8 @@ void FeatureFinder::look_at_loop(const CellLoop& loop, const BrickCrossings& cro
   for (std::size_t n = 0; n < c.size; ++n) {
     const std::uint8_t edge = loop.edges[n], next = loop.edges[(n + 1) % loop.size];
     c.feature.edges |= static_cast<std::uint16_t>(1U << edge);
-    const std::uint8_t face = table_.common_face(edge, next);
+    c.edges[n] = edge;
+    const std::uint8_t face = c.side_faces[n] = table_.common_face(edge, next);
     if (dot(normal(n), normal((n + 1) % loop.size)) < candidate_cosine)
       c.feature.faces |= static_cast<std::uint8_t>(1U << face);
     c.middle += points[c.points[n]] / loop.size;

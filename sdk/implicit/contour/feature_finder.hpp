@@ -36,6 +36,9 @@ class FeatureFinder {
                                                std::size_t first, std::size_t last, std::span<const JoinedCell> joined,
                                                GridSampler& sampler, const std::function<bool()>& go_on);
 
+  /// Of those that were found last.
+  [[nodiscard]] const std::vector<BorderSide>& borders() const { return borders_; }
+
   [[nodiscard]] std::uint64_t bytes() const {
     return planes_.capacity() * sizeof planes_[0] + found_.capacity() * sizeof found_[0];
   }
@@ -45,6 +48,7 @@ class FeatureFinder {
     Feature feature;
     std::uint8_t size = 0;
     std::array<std::uint32_t, 12> points{};
+    std::array<std::uint8_t, 12> edges{}, side_faces{};  ///< of each point; through which the side after it runs
     Vec3 middle, position;
     double moved = 0, off = 0;  ///< in the last round, and the largest distance from a plane after it
     bool sharp = true;
@@ -58,6 +62,17 @@ class FeatureFinder {
                     std::uint32_t row, std::size_t cell);
   void approach(std::span<const Vec3> points, double share, GridSampler& sampler, const std::function<bool()>& go_on);
   [[nodiscard]] bool within_reach(const Candidate& c) const;
+  // turned_triangles.cpp
+  struct Side;
+  [[nodiscard]] bool goes_on_through(const Candidate& c, std::size_t side) const {
+    return (c.feature.faces >> c.side_faces[side] & 1U) != 0;
+  }
+  [[nodiscard]] bool leads_out(const Candidate& c, std::size_t side, std::size_t first, std::size_t last) const;
+  void keep_borders(std::span<const Vec3> points, std::size_t first, std::size_t last);
+  [[nodiscard]] bool has_whole_face(const Candidate& c, std::size_t side) const;
+  [[nodiscard]] bool turns_a_triangle(std::size_t candidate, std::span<const Vec3> points, std::span<const Side> sides,
+                                      std::size_t first, std::size_t last) const;
+  void reject_turning(std::span<const Vec3> points, std::size_t first, std::size_t last);
 
   const Layout& layout_;
   const Grid& grid_;
@@ -68,6 +83,7 @@ class FeatureFinder {
   std::vector<std::uint16_t> cells_;
   std::vector<Candidate> candidates_;
   std::vector<Found> found_;
+  std::vector<BorderSide> borders_;
 };
 
 }  // namespace meso::implicit

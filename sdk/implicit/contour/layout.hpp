@@ -7,6 +7,7 @@
 // row (j, k) lies between rows j - 1 and j of the planes k - 1 and k. An added node has the coordinate of the node it
 // adds to, so that a vertex on an edge between the two stands exactly in the box's plane.
 
+#include <cmath>
 #include <vector>
 
 #include "meso/implicit/grid.hpp"
@@ -27,6 +28,11 @@ struct Layout {
   [[nodiscard]] double x(std::ptrdiff_t i) const { return x_[static_cast<std::size_t>(i + 1)]; }
   [[nodiscard]] double y(std::ptrdiff_t j) const { return y_[static_cast<std::size_t>(j + 1)]; }
   [[nodiscard]] double z(std::ptrdiff_t k) const { return z_[static_cast<std::size_t>(k + 1)]; }
+
+  /// Twice the area of a triangle that faces nowhere.
+  [[nodiscard]] double least_facing() const {
+    return 1e-6 * std::pow((x(1) - x(0)) * (y(1) - y(0)) * (z(1) - z(0)), 2.0 / 3);
+  }
 
   std::size_t nx, ny, nz;
   std::size_t words;  ///< of a row of cells

@@ -13,9 +13,6 @@
 namespace meso::implicit {
 namespace {
 
-// Of the tolerance: a point that is no farther is used.
-constexpr double near_surface = 0.3;
-
 Vec3 way_of(const PointNearSurface& from, const Foot& foot) {
   const Vec3 way = foot.point - from.point;
   return norm(way) > 0 ? way : foot.gradient;
@@ -51,12 +48,15 @@ std::vector<RefinableMesh::Flip> RefinableMesh::possible_flips(double tolerance)
 }
 
 // Triangles a b c and b a d become a d c and b c d.
-void RefinableMesh::turn(const Flip& flip, float distance) {
+void RefinableMesh::turn(const Flip& flip) {
   const std::uint32_t t = flip.edge.triangle, u = flip.other;
   const std::uint32_t a = mesh_.triangles[t][flip.edge.side], b = mesh_.triangles[t][(flip.edge.side + 1U) % 3];
   const auto of_one = [&](std::size_t i) { return known_[t].edge[(flip.edge.side + i) % 3]; };
   const auto of_other = [&](std::size_t i) { return known_[u].edge[(flip.other_side + i) % 3]; };
-  const Known one{.edge = {of_other(1), distance, of_one(2)}}, other{.edge = {of_one(1), distance, of_other(2)}};
+  const auto at_one = [&](std::size_t i) { return known_[t].farthest_at[(flip.edge.side + i) % 3]; };
+  const auto at_other = [&](std::size_t i) { return known_[u].farthest_at[(flip.other_side + i) % 3]; };
+  const Known one{.edge = {of_other(1), unknown, of_one(2)}, .farthest_at = {at_other(1), 4, at_one(2)}},
+      other{.edge = {of_one(1), unknown, of_other(2)}, .farthest_at = {at_one(1), 4, at_other(2)}};
   mesh_.triangles[t] = {a, flip.d, flip.c};
   mesh_.triangles[u] = {b, flip.c, flip.d};
   known_[t] = one;
@@ -70,16 +70,19 @@ void RefinableMesh::flip(double tolerance) {
   const std::vector<Flip> flips = possible_flips(tolerance);
   if (flips.empty()) return;
   std::vector<char> marked(mesh_.points.size(), 0), turned(mesh_.triangles.size(), 0);
+  // Of the new edge, and in the middles of its triangles.
+  constexpr std::array<double, 7> along{0.125, 0.25, 0.375, 0.5, 0.625, 0.75, 0.875};
+  constexpr std::size_t each = along.size() + 2;
   std::vector<PointNearSurface> asked;
   for (const Flip& f : flips) {
     marked[f.c] = marked[f.d] = 1;
     const Vec3 ahead = normal_of(f.edge.triangle) + normal_of(f.other);
-    asked.push_back(middle_of(f.c, f.d));
+    for (const double share : along) asked.push_back(between(f.c, f.d, share));
     for (const std::uint32_t end : {f.edge.a, f.edge.b}) {
       const double most = norm(mesh_.points[end] - mesh_.points[f.c]) + norm(mesh_.points[end] - mesh_.points[f.d]);
       asked.push_back({.point = (mesh_.points[f.c] + mesh_.points[f.d] + mesh_.points[end]) / 3, .most = most});
     }
-    for (std::size_t i = asked.size() - 3; i < asked.size(); ++i) asked[i].ahead = ahead;
+    for (std::size_t i = asked.size() - each; i < asked.size(); ++i) asked[i].ahead = ahead;
   }
   std::set<std::pair<std::uint32_t, std::uint32_t>> edges;  // no edge may be there twice
   for (const auto& t : mesh_.triangles)
@@ -91,11 +94,12 @@ void RefinableMesh::flip(double tolerance) {
   feet_.distances(asked, tolerance, distances);
   for (std::size_t i = 0; i < flips.size(); ++i) {
     const Flip& f = flips[i];
-    if (!(std::max({distances[3 * i], distances[3 * i + 1], distances[3 * i + 2]}) <= tolerance) ||
-        turned[f.edge.triangle] != 0 || turned[f.other] != 0)
+    const auto of_flip = std::span(distances).subspan(each * i, each);
+    if (std::ranges::any_of(of_flip, [&](double d) { return !(d <= tolerance); }) || turned[f.edge.triangle] != 0 ||
+        turned[f.other] != 0)
       continue;
     if (!edges.emplace(std::min(f.c, f.d), std::max(f.c, f.d)).second) continue;
-    turn(f, static_cast<float>(distances[3 * i]));
+    turn(f);
     turned[f.edge.triangle] = turned[f.other] = 1;
   }
   measure(tolerance);
@@ -323,6 +327,7 @@ void RefinableMesh::place(std::span<const Cut> cuts, std::span<const PointNearSu
     // In a plane of the box, only a part of the gradient was asked for.
     if (middles[i].planes != 0 && norm(middles[i].gradient) > 0) feet[i].gradient = middles[i].gradient;
   }
+  use_missed_creases(cuts, middles, feet);
   add_points(middles, feet, tolerance);
 }
 

@@ -12,17 +12,6 @@ namespace {
 
 constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
 
-// What the normals at both ends tell of an edge's distance is believed if it is below `surely` times the tolerance, or
-// above 1 / `surely` times.
-constexpr double surely = 0.4;
-
-// What is asked of a point takes more memory than a triangle: so many points at a time.
-constexpr std::size_t asked_at_once = 1 << 14;
-
-bool tells(double distance, double tolerance) {
-  return std::fabs(distance) <= surely * tolerance || std::fabs(distance) >= tolerance / surely;
-}
-
 }  // namespace
 
 RefinableMesh::RefinableMesh(TriangleMesh mesh, const Box3& box, SurfaceFeet& feet, bool smooth)
@@ -74,220 +63,27 @@ void RefinableMesh::move_onto_surface(std::span<const std::size_t> which, double
   }
 }
 
-void RefinableMesh::measure_points(double tolerance) {
-  std::vector<PointNearSurface> off;
-  std::vector<std::size_t> which;
-  std::vector<double> distances;
-  const auto know = [&] {
-    feet_.distances(off, tolerance, distances);
-    for (std::size_t n = 0; n < which.size(); ++n) distances_[which[n]] = static_cast<float>(distances[n]);
-    off.clear(), which.clear();
-  };
-  for (std::size_t i = 0; i < distances_.size(); ++i) {
-    if (!(distances_[i] > tolerance / 10)) continue;
-    off.push_back({.point = mesh_.points[i],
-                   .planes = planes_[i],
-                   .slope = norm(gradients_[i]),
-                   .ahead = within(planes_[i], gradients_[i]),
-                   .most = 2 * feet_.cell()});
-    which.push_back(i);
-    if (off.size() == asked_at_once) know();
-  }
-  know();
+void RefinableMesh::sort_cuts(std::vector<Cut>& cuts) {
+  std::sort(cuts.begin(), cuts.end());
+  cuts.erase(std::unique(cuts.begin(), cuts.end()), cuts.end());
 }
 
-unsigned RefinableMesh::plane_of_triangle(std::uint32_t triangle) const {
-  const auto& t = mesh_.triangles[triangle];
-  return planes_[t[0]] & planes_[t[1]] & planes_[t[2]];
+RefinableMesh::Edge RefinableMesh::edge_of(std::uint32_t triangle, std::size_t side) const {
+  const std::uint32_t a = mesh_.triangles[triangle][side], b = mesh_.triangles[triangle][(side + 1) % 3];
+  return {std::min(a, b), std::max(a, b), 0, 0};
 }
 
-PointNearSurface RefinableMesh::middle_of(std::uint32_t a, std::uint32_t b) const {
-  const unsigned planes = planes_[a] & planes_[b];
-  PointNearSurface middle{.point = (mesh_.points[a] + mesh_.points[b]) / 2, .planes = planes};
-  middle.most =
-      norm(mesh_.points[a] - mesh_.points[b]) / 2 + static_cast<double>(std::max(distances_[a], distances_[b]));
-  if (turns_evenly(a, b))
-    middle.gradient = (gradients_[a] + gradients_[b]) / 2;
-  else if (planes == 0)  // slopes within a plane of the box may be any smaller
-    middle.slope = std::min(norm(gradients_[a]), norm(gradients_[b]));
-  return middle;
-}
-
-PointNearSurface RefinableMesh::middle_of(std::uint32_t triangle) const {
-  const auto& [a, b, c] = mesh_.triangles[triangle];
-  PointNearSurface middle{.point = (mesh_.points[a] + mesh_.points[b] + mesh_.points[c]) / 3};
-  for (const std::uint32_t p : mesh_.triangles[triangle])
-    middle.most = std::min(middle.most, norm(mesh_.points[p] - middle.point) + static_cast<double>(distances_[p]));
-  if (turns_evenly(a, b) && turns_evenly(b, c) && turns_evenly(c, a))
-    middle.gradient = (gradients_[a] + gradients_[b] + gradients_[c]) / 3;
-  else
-    middle.slope = std::min({norm(gradients_[a]), norm(gradients_[b]), norm(gradients_[c])});
-  return middle;
-}
-
-Vec3 RefinableMesh::normal_of(std::uint32_t triangle) const {
-  const auto& [a, b, c] = mesh_.triangles[triangle];
-  return cross(mesh_.points[b] - mesh_.points[a], mesh_.points[c] - mesh_.points[a]);
-}
-
-// Normals at the ends that are up to 60 degrees apart tell what is between them.
-bool RefinableMesh::turns_evenly(std::uint32_t a, std::uint32_t b) const {
-  const unsigned planes = planes_[a] & planes_[b];
-  const Vec3 na = within(planes, gradients_[a]), nb = within(planes, gradients_[b]);
-  return smooth_ && dot(na, nb) > 0.5 * norm(na) * norm(nb);
-}
-
-// By one value each where the gradient is known; else along it, to the surface.
-void RefinableMesh::ask(std::span<const PointNearSurface> points, double tolerance, std::vector<double>& distances) {
-  std::vector<Vec3> simple;
-  std::vector<PointNearSurface> others;
-  for (const PointNearSurface& p : points)
-    if (norm(p.gradient) > 0)
-      simple.push_back(p.point);
-    else
-      others.push_back(p);
-  std::vector<double> values, found;
-  feet_.values(simple, values);
-  feet_.distances(others, tolerance, found);
-  distances.clear();
-  auto value = values.begin(), distance = found.begin();
-  for (const PointNearSurface& p : points)
-    distances.push_back(norm(p.gradient) > 0 ? *value++ / norm(within(p.planes, p.gradient)) : *distance++);
-  for (double& d : distances)
-    if (!std::isfinite(d)) d = 0;
-}
-
-// The cubic that the normals at both ends tell has the heights (9 p - 3 q) / 64, (p - q) / 8 and (3 p - 9 q) / 64 over
-// the quarters of its chord; p and q are its slopes times the chord's length.
-RefinableMesh::Bend RefinableMesh::bend_along(std::uint32_t a, std::uint32_t b) const {
-  const unsigned planes = planes_[a] & planes_[b];
-  const Vec3 na = within(planes, gradients_[a]), nb = within(planes, gradients_[b]);
-  const Vec3 along = mesh_.points[b] - mesh_.points[a];
-  const double p = dot(na, along) / norm(na), q = dot(nb, along) / norm(nb);
-  return {(p - q) / 8, 3.0 / 64 * std::fabs(p + q)};
-}
-
-void RefinableMesh::measure(double tolerance) {
-  measure_edges(tolerance);
-  measure_middles(tolerance);
-}
-
-void RefinableMesh::measure_edges(double tolerance) {
-  std::vector<Edge> edges;
-  for (std::uint32_t t = 0; t < known_.size(); ++t)
-    for (std::uint8_t side = 0; side < 3; ++side) {
-      if (known_[t].edge[side] != unknown) continue;
-      const std::uint32_t a = mesh_.triangles[t][side], b = mesh_.triangles[t][(side + 1) % 3];
-      edges.push_back({std::min(a, b), std::max(a, b), t, side});
-    }
-  std::sort(edges.begin(), edges.end());
-  std::vector<PointNearSurface> asked;
-  std::vector<std::pair<std::size_t, Bend>> first_of_asked;
-  std::vector<double> distances;
-  const auto know = [&](std::size_t e, double distance) {
-    for (std::size_t i = e; i < e + 2; ++i)
-      known_[edges[i].triangle].edge[edges[i].side] = static_cast<float>(distance);
-  };
-  const auto know_asked = [&] {
-    ask(asked, tolerance, distances);
-    for (std::size_t i = 0; i < distances.size(); ++i) {
-      auto& [edge, bend] = first_of_asked[i];
-      bend.middle = std::clamp(distances[i], -asked[i].most, asked[i].most);
-      know(edge, bend.farthest());
-    }
-    asked.clear(), first_of_asked.clear();
-  };
-  for (std::size_t e = 0; e + 1 < edges.size(); e += 2) {  // the mesh is closed: every edge twice
-    const unsigned p = plane_of_triangle(edges[e].triangle), q = plane_of_triangle(edges[e + 1].triangle);
-    if (p != 0 && q != 0) {  // within the box's sides, or where two of them meet
-      know(e, 0);
-      continue;
-    }
-    Bend bend;
-    if (turns_evenly(edges[e].a, edges[e].b)) {
-      bend = bend_along(edges[e].a, edges[e].b);
-      if (tells(bend.farthest(), tolerance)) {
-        know(e, bend.farthest());
-        continue;
-      }
-    }
-    asked.push_back(middle_of(edges[e].a, edges[e].b));
-    const Vec3 n0 = normal_of(edges[e].triangle), n1 = normal_of(edges[e + 1].triangle);
-    asked.back().ahead = within(asked.back().planes, n0 / norm(n0) + n1 / norm(n1));
-    first_of_asked.push_back({e, bend});
-    if (asked.size() == asked_at_once) know_asked();
-  }
-  know_asked();
-}
-
-// Where an edge is to be halved, the middle will be another one. Of a triangle curved as a quadratic function is, the
-// middle is 4/9 of the sum of the edges' distances away; beside an edge of the surface it may be any farther, but not
-// than from the corners.
-void RefinableMesh::measure_middles(double tolerance) {
-  std::vector<PointNearSurface> asked;
-  std::vector<std::uint32_t> triangles;
-  std::vector<double> distances;
-  const auto know_asked = [&] {
-    ask(asked, tolerance, distances);
-    for (std::size_t i = 0; i < distances.size(); ++i) known_[triangles[i]].middle = static_cast<float>(distances[i]);
-    asked.clear(), triangles.clear();
-  };
+// Edges to be halved: those that are too far, and the longest of a triangle that is; and triangles that halving does
+// not mend.
+void RefinableMesh::collect(double tolerance, std::vector<Cut>& cuts, std::vector<std::uint32_t>& bridges) const {
   for (std::uint32_t t = 0; t < known_.size(); ++t) {
-    const auto& edge = known_[t].edge;
-    const auto size = [&](std::size_t side) { return std::fabs(edge[side]); };
-    if (known_[t].middle != unknown || std::max({size(0), size(1), size(2)}) > tolerance) continue;
-    const double told = 4.0 / 9 * (edge[0] + edge[1] + edge[2]);
-    if (plane_of_triangle(t) != 0) {
-      known_[t].middle = 0;
-    } else if (smooth_ && tells(told, tolerance)) {
-      known_[t].middle = static_cast<float>(told);
-    } else {
-      const PointNearSurface middle = middle_of(t);
-      if (!smooth_ && middle.most <= tolerance) {
-        known_[t].middle = static_cast<float>(middle.most);
-        continue;
-      }
-      asked.push_back(middle);
-      asked.back().ahead = normal_of(t);
-      triangles.push_back(t);
-      if (asked.size() == asked_at_once) know_asked();
-    }
-  }
-  know_asked();
-}
-
-bool RefinableMesh::normals_were_right(double tolerance) {
-  constexpr std::size_t least = 300, one_of = 200;
-  if (!smooth_) return true;
-  std::vector<PointNearSurface> asked;
-  const std::size_t step = std::clamp<std::size_t>(known_.size() / least, 1, one_of);
-  for (std::uint32_t t = 0; t < known_.size(); t += static_cast<std::uint32_t>(step)) {
-    if (plane_of_triangle(t) != 0) continue;
-    asked.push_back(middle_of(t));
-    const std::size_t side = t / step % 3;
-    asked.push_back(middle_of(mesh_.triangles[t][side], mesh_.triangles[t][(side + 1) % 3]));
-  }
-  for (PointNearSurface& p : asked) p.gradient = {};
-  std::vector<Foot> found;
-  feet_.feet(asked, tolerance / 20, found);
-  if (std::all_of(found.begin(), found.end(), [&](const Foot& f) { return f.distance <= tolerance; })) return true;
-  smooth_ = false;
-  known_.assign(known_.size(), {});
-  return false;
-}
-
-std::size_t RefinableMesh::refine(double tolerance) {
-  std::vector<Cut> cuts;
-  std::vector<std::uint32_t> bridges;
-  const auto length = [&](std::uint32_t a, std::uint32_t b) { return norm(mesh_.points[a] - mesh_.points[b]); };
-  const auto edge_of = [&](std::uint32_t t, std::size_t side) {
-    const std::uint32_t a = mesh_.triangles[t][side], b = mesh_.triangles[t][(side + 1) % 3];
-    return Edge{std::min(a, b), std::max(a, b), 0, 0};
-  };
-  for (std::uint32_t t = 0; t < known_.size(); ++t) {
-    const auto add = [&](std::size_t side) {
+    const auto length = [&](std::size_t side) {
       const Edge e = edge_of(t, side);
-      if (length(e.a, e.b) > tolerance) cuts.push_back({e, known_[t].edge[side], {}});
+      return norm(mesh_.points[e.a] - mesh_.points[e.b]);
+    };
+    const auto add = [&](std::size_t side) {
+      if (length(side) > tolerance)
+        cuts.push_back({edge_of(t, side), known_[t].edge[side], known_[t].farthest_at[side] / 8.0});
     };
     for (std::size_t side = 0; side < 3; ++side)
       if (std::fabs(known_[t].edge[side]) > tolerance) add(side);
@@ -297,22 +93,31 @@ std::size_t RefinableMesh::refine(double tolerance) {
       continue;
     }
     std::size_t longest = 0;
-    const auto side_length = [&](std::size_t side) {
-      const Edge e = edge_of(t, side);
-      return length(e.a, e.b);
-    };
     for (std::size_t side = 1; side < 3; ++side)
-      if (side_length(side) > side_length(longest)) longest = side;
+      if (length(side) > length(longest)) longest = side;
     add(longest);
   }
-  std::sort(cuts.begin(), cuts.end());
-  cuts.erase(std::unique(cuts.begin(), cuts.end()), cuts.end());
+  sort_cuts(cuts);
+}
+
+std::size_t RefinableMesh::refine(double tolerance) {
+  std::vector<Cut> cuts;
+  std::vector<std::uint32_t> bridges;
+  missed_.clear();
+  collect(tolerance, cuts, bridges);
+  if (cuts.empty() && bridges.empty()) {
+    measure_creases(tolerance);
+    collect(tolerance, cuts, bridges);
+    // Also edges that are short: the tip of a wedge may be far from them.
+    for (const Missed& m : missed_) cuts.push_back({{m.edge.a, m.edge.b, 0, 0}, static_cast<float>(tolerance)});
+    sort_cuts(cuts);
+  }
   if (cuts.empty() && bridges.empty()) return 0;
   std::vector<std::array<std::uint32_t, 3>> halved(known_.size(), {none, none, none});  // numbers of cuts
   std::vector<Vec3> normals(cuts.size());
   for (std::uint32_t t = 0; t < known_.size(); ++t)
     for (std::size_t side = 0; side < 3; ++side) {
-      const Cut wanted{edge_of(t, side), 0, {}};
+      const Cut wanted{edge_of(t, side), 0};
       const auto found = std::lower_bound(cuts.begin(), cuts.end(), wanted);
       if (found == cuts.end() || !(*found == wanted)) continue;
       halved[t][side] = static_cast<std::uint32_t>(found - cuts.begin());
@@ -323,7 +128,7 @@ std::size_t RefinableMesh::refine(double tolerance) {
   const auto first = static_cast<std::uint32_t>(mesh_.points.size());
   std::vector<PointNearSurface> middles;
   for (std::size_t i = 0; i < cuts.size(); ++i) {
-    middles.push_back(middle_of(cuts[i].edge.a, cuts[i].edge.b));
+    middles.push_back(between(cuts[i].edge.a, cuts[i].edge.b, cuts[i].share));
     PointNearSurface& middle = middles.back();
     middle.slope = 0;
     if (norm(middle.gradient) > 0)
@@ -389,25 +194,6 @@ void RefinableMesh::split(std::uint32_t triangle, const std::array<std::uint32_t
       put({at(1), m(1), m(2)}, {unknown, unknown, unknown});
     }
   }
-}
-
-float RefinableMesh::farthest(const Known& known) {
-  float result = 0;
-  for (const float d : {known.edge[0], known.edge[1], known.edge[2], known.middle})
-    if (d != unknown) result = std::max(result, std::fabs(d));
-  return result;
-}
-
-double RefinableMesh::distance() const {
-  float largest = distances_.empty() ? 0 : *std::max_element(distances_.begin(), distances_.end());
-  for (const Known& k : known_) largest = std::max(largest, farthest(k));
-  return largest;
-}
-
-double RefinableMesh::triangles_for(double tolerance) const {
-  double sum = 0;
-  for (const Known& k : known_) sum += std::max(1.0, static_cast<double>(farthest(k)) / tolerance);
-  return sum;
 }
 
 }  // namespace meso::implicit

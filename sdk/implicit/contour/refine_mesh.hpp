@@ -2,9 +2,10 @@
 #pragma once
 // Halves edges of a mesh where it is too far from the surface of its field, until it is not.
 //
-// The distance is measured in the middles of edges and triangles. An edge that is too far gets a vertex on the surface;
-// both of its triangles are cut there, so the mesh stays closed and a manifold whatever happens. The distance of an
-// edge goes with the square of its length, so triangles multiply about as distance over tolerance.
+// The distance is measured in edges and triangles, at more places where there may be creases between. An edge that is
+// too far gets a vertex on the surface; both of its triangles are cut there, so the mesh stays closed and a manifold
+// whatever happens. The distance of an edge goes with the square of its length, so triangles multiply about as distance
+// over tolerance.
 //
 // Of a smooth surface, the normals at an edge's ends tell its distance: by an eighth of what they turn along it. Asked
 // is only where that is near the tolerance; and, in the end, at a few of the others.
@@ -19,6 +20,9 @@
 
 namespace meso::implicit {
 
+/// What is asked of a point takes more memory than a triangle: so many points at a time.
+inline constexpr std::size_t asked_at_once = 1 << 14;
+
 /// Triangles of a mesh with what is known of them.
 class RefinableMesh {
  public:
@@ -31,6 +35,8 @@ class RefinableMesh {
   void measure_points(double tolerance);
   /// Measures what is not known yet; distances that are not near `tolerance` are told roughly.
   void measure(double tolerance);
+  /// Measures how far creases are from the mesh, where the mesh is within `tolerance`; call measure() before.
+  void measure_creases(double tolerance);
   /// Halves the edges whose distance is more; returns how many. Call measure() before.
   std::size_t refine(double tolerance);
   /// Edges whose distance is more get the other diagonal of their two triangles in their place, where that is near.
@@ -55,6 +61,7 @@ class RefinableMesh {
   struct Known {
     std::array<float, 3> edge{unknown, unknown, unknown};  ///< of the edge after each corner
     float middle = unknown;
+    std::array<std::uint8_t, 3> farthest_at{4, 4, 4};  ///< eighths of each edge, from its lower end
   };
   /// A curve over its chord: its height over the middle, and what an S adds over the quarters.
   struct Bend {
@@ -73,20 +80,39 @@ class RefinableMesh {
   struct Cut {
     Edge edge;
     float distance;
+    double share = 0.5;                       ///< of b, where it is farthest
     std::array<std::uint32_t, 2> opposite{};  ///< corners of the edge's triangles
     bool operator<(const Cut& c) const { return edge < c.edge; }
     bool operator==(const Cut& c) const { return edge == c.edge; }
   };
 
+  /// A crease that is too far from the mesh, and the edge beside it: it was looked for between
+  /// two points.
+  struct Missed {
+    Edge edge, other;  ///< of one triangle and the other
+    std::array<std::uint32_t, 2> sheets{};
+    std::array<std::uint32_t, 4> around{};
+    Vec3 place{};
+  };
+
+  /// Of the tolerance: a point that is no farther is used.
+  static constexpr double near_surface = 0.3;
+
   [[nodiscard]] static float farthest(const Known& known);
+  [[nodiscard]] Edge edge_of(std::uint32_t triangle, std::size_t side) const;
+  static void sort_cuts(std::vector<Cut>& cuts);
+  void collect(double tolerance, std::vector<Cut>& cuts, std::vector<std::uint32_t>& bridges) const;
   void move_onto_surface(std::span<const std::size_t> which, double tolerance);
   void measure_edges(double tolerance);
+  void measure_along(std::span<const Edge> edges, std::span<const std::uint32_t> pairs, double tolerance);
   void measure_middles(double tolerance);
+  void measure_within(std::span<const std::uint32_t> triangles, double tolerance);
+  [[nodiscard]] double tangents_leave(std::uint32_t a, std::uint32_t b) const;
   void ask(std::span<const PointNearSurface> points, double tolerance, std::vector<double>& distances);
   // place_points.cpp
   struct Flip;
   [[nodiscard]] std::vector<Flip> possible_flips(double tolerance) const;
-  void turn(const Flip& flip, float distance);
+  void turn(const Flip& flip);
   [[nodiscard]] bool is_bridge(std::uint32_t triangle) const;
   void divide(std::span<const std::uint32_t> triangles, double tolerance);
   void take_gradients(std::span<const Foot> feet, std::vector<Vec3>& gradients);
@@ -100,14 +126,23 @@ class RefinableMesh {
                   std::span<Foot> feet);
   void look_for_creases(std::span<const Cut> cuts, std::span<const PointNearSurface> middles, double tolerance,
                         std::span<const char> poor, std::span<Foot> feet);
+  // missed_creases.cpp
+  [[nodiscard]] std::vector<Missed> possibly_missed(double tolerance) const;
+  void use_missed_creases(std::span<const Cut> cuts, std::span<const PointNearSurface> middles,
+                          std::span<Foot> feet) const;
+
   void place(std::span<const Cut> cuts, std::span<const PointNearSurface> middles, double tolerance);
 
   [[nodiscard]] Vec3 normal_of(std::uint32_t triangle) const;
   [[nodiscard]] bool turns_evenly(std::uint32_t a, std::uint32_t b) const;
   [[nodiscard]] Bend bend_along(std::uint32_t a, std::uint32_t b) const;
   [[nodiscard]] unsigned plane_of_triangle(std::uint32_t triangle) const;
-  [[nodiscard]] PointNearSurface middle_of(std::uint32_t a, std::uint32_t b) const;
-  [[nodiscard]] PointNearSurface middle_of(std::uint32_t triangle) const;
+  [[nodiscard]] PointNearSurface middle_of(std::uint32_t a, std::uint32_t b) const { return between(a, b, 0.5); }
+  [[nodiscard]] PointNearSurface middle_of(std::uint32_t triangle) const {
+    return between(triangle, Vec3{1, 1, 1} / 3);
+  }
+  [[nodiscard]] PointNearSurface between(std::uint32_t a, std::uint32_t b, double share_of_b) const;
+  [[nodiscard]] PointNearSurface between(std::uint32_t triangle, Vec3 shares) const;
   void split(std::uint32_t triangle, const std::array<std::uint32_t, 3>& middles);
 
   TriangleMesh mesh_;
@@ -118,6 +153,7 @@ class RefinableMesh {
   std::vector<unsigned> planes_;  // of points
   std::vector<Vec3> gradients_;   // at points
   std::vector<double> values_;    // at the points of the mesh that was given
+  std::vector<Missed> missed_;    // by edge
   std::vector<float> distances_;  // of points, in the planes of the box that they are on
 };
 

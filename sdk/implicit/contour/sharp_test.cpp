@@ -6,6 +6,9 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <numeric>
+#include <utility>
+#include <vector>
 
 #include "function_source_for_test.hpp"
 #include "meso/base/memory_mesh_sink.hpp"
@@ -27,6 +30,14 @@ TriangleMesh sharp_mesh(const Grid& grid, const Function& f, const RunOptions& r
   DiagnosticSink diagnostics;
   EXPECT_TRUE(contour(FunctionSource(grid, f, signs_only), sink, {.sharp = true}, run, diagnostics));
   EXPECT_TRUE(diagnostics.diagnostics().empty());
+  return mesh;
+}
+
+TriangleMesh plain_mesh(const Grid& grid, const Function& f) {
+  TriangleMesh mesh;
+  MemoryMeshSink sink(mesh);
+  DiagnosticSink diagnostics;
+  EXPECT_TRUE(contour(FunctionSource(grid, f), sink, {.polish = true}, {}, diagnostics));
   return mesh;
 }
 
@@ -214,26 +225,19 @@ TEST(Sharp, ClipsAGyroid) {
           if (value(i, j) != value(i, j - 1)) expected += pi / 4 * 2 * half_sides[u] / lines;
         }
     }
-  TriangleMesh plain;
-  MemoryMeshSink sink(plain);
-  DiagnosticSink diagnostics;
-  ASSERT_TRUE(contour(FunctionSource(cube(n), clipped), sink, {.polish = true}, {}, diagnostics));
+  const TriangleMesh plain = plain_mesh(cube(n), clipped);
   EXPECT_LT(flipped(mesh, clipped, h), flipped(plain, clipped, h));  // both: beside wedges thinner than a cell
   EXPECT_GT(on_edges, expected / h / 2);
   // Missing: where the two meet at less than 25 degrees, and wedges thinner than a cell; as many as there are cells.
-  EXPECT_NEAR(length, expected, 6 * h * expected);
+  EXPECT_NEAR(length, expected, 6.5 * h * expected);
   EXPECT_LE(off, 2u);  // in the middle of cells with joined faces
 }
 
 TEST(Sharp, LeavesRoundThingsAlone) {
   // Five samples across: normals of a cell's corners spread by more than an edge's would have to.
   const auto ball = [](Vec3 p) { return norm(p) - 0.62; };
-  TriangleMesh plain;
-  MemoryMeshSink sink(plain);
-  DiagnosticSink diagnostics;
   const Grid grid = cube(8);
-  ASSERT_TRUE(contour(FunctionSource(grid, ball), sink, {.polish = true}, {}, diagnostics));
-  EXPECT_EQ(sharp_mesh(grid, ball).triangles, plain.triangles);
+  EXPECT_EQ(sharp_mesh(grid, ball).triangles, plain_mesh(grid, ball).triangles);
 }
 
 TEST(Sharp, IsClosedWhateverTheFieldIs) {
@@ -248,6 +252,82 @@ TEST(Sharp, IsClosedWhateverTheFieldIs) {
     return std::min({std::fabs(p.x + 0.3 * p.y) - 0.1, std::fabs(p.y - 0.2 * p.z) - 0.1, std::fabs(p.z + p.x) - 0.1});
   };
   expect_closed(sharp_mesh(cube(33), crossing_plates));
+}
+
+/// What the shells of a mesh enclose, one by one.
+std::vector<double> volumes_of_shells(const TriangleMesh& mesh) {
+  std::vector<std::uint32_t> parent(mesh.points.size());
+  std::iota(parent.begin(), parent.end(), 0U);
+  const auto root = [&](std::uint32_t p) {
+    while (parent[p] != p) p = parent[p] = parent[parent[p]];
+    return p;
+  };
+  for (const auto& t : mesh.triangles) parent[root(t[1])] = root(t[0]), parent[root(t[2])] = root(t[0]);
+  std::vector<double> enclosed(mesh.points.size(), 0);
+  std::vector<char> is_root(mesh.points.size(), 0);
+  for (const auto& t : mesh.triangles) {
+    const std::uint32_t r = root(t[0]);
+    is_root[r] = 1;
+    // Seen from the shell itself: small ones far from the origin would drown in rounding.
+    const Vec3 eye = mesh.points[r];
+    enclosed[r] += dot(mesh.points[t[0]] - eye, cross(mesh.points[t[1]] - eye, mesh.points[t[2]] - eye)) / 6;
+  }
+  std::vector<double> result;
+  for (std::size_t p = 0; p < enclosed.size(); ++p)
+    if (is_root[p] != 0) result.push_back(enclosed[p]);
+  return result;
+}
+
+/// Triangles that face inward by the field at all of their corners and in their middle.
+std::size_t turned(const TriangleMesh& mesh, const Function& f, double h) {
+  std::size_t count = 0;
+  const auto slope_at = [&](Vec3 p) {
+    Vec3 slope;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      Vec3 before = p, after = p;
+      before[axis] -= 1e-6 * h, after[axis] += 1e-6 * h;
+      slope[axis] = f(after) - f(before);
+    }
+    return slope;
+  };
+  for (const auto& t : mesh.triangles) {
+    const Vec3 a = mesh.points[t[0]], b = mesh.points[t[1]], c = mesh.points[t[2]];
+    const Vec3 normal = cross(b - a, c - a);
+    bool inward = true;
+    for (const Vec3& p : {a, b, c, (a + b + c) / 3}) inward = inward && dot(normal, slope_at(p)) < 0;
+    count += inward ? 1 : 0;
+  }
+  return count;
+}
+
+// A shell that is thinner than a cell, of a lattice that is not much thicker, is seen as crumbs: each of them has its
+// inside inside all the same.
+TEST(Sharp, TurnsNoCrumbInsideOut) {
+  const auto crumbs = [](Vec3 p) {
+    const double r = norm(p);
+    return std::max({r - 1, 0.98 - r, gyroid(p / 0.4)});
+  };
+  for (const std::int32_t n : {30, 40, 60, 75}) {
+    const double h = 2.0 / (n - 1);
+    const TriangleMesh mesh = sharp_mesh(cube(n), crumbs);
+    expect_closed(mesh);
+    const std::vector<double> volumes = volumes_of_shells(mesh);
+    EXPECT_GT(volumes.size(), 100u) << n;
+    EXPECT_EQ(std::count_if(volumes.begin(), volumes.end(), [](double v) { return v <= 0; }), 0) << n;
+    // What marching cubes turn by themselves is there in both. Between two bricks, one triangle may be left.
+    EXPECT_LE(turned(mesh, crumbs, h), turned(plain_mesh(cube(n), crumbs), crumbs, h) + 1) << n;
+  }
+}
+
+TEST(Sharp, TurnsNoTriangleOfASheetCutByTheBox) {
+  // Walls that grow from half a cell to two.
+  const auto sheet = [](Vec3 p) { return std::max(std::fabs(gyroid(p)) - 0.3 - 0.25 * p.z, box(p)); };
+  for (const std::int32_t n : {30, 45}) {
+    const double h = 2.0 / (n - 1);
+    const TriangleMesh mesh = sharp_mesh(cube(n), sheet);
+    expect_closed(mesh);
+    EXPECT_LE(turned(mesh, sheet, h), turned(plain_mesh(cube(n), sheet), sheet, h)) << n;
+  }
 }
 
 TEST(Sharp, IsTheSameForAnyNumberOfThreads) {

@@ -2,6 +2,7 @@
 #include "vertex_pass.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <utility>
 
 #include "bits.hpp"
@@ -135,6 +136,8 @@ void VertexPass::row(std::size_t j, std::size_t k, std::uint32_t cell_row, Brick
       sampler_->row(static_cast<std::int32_t>(j), static_cast<std::int32_t>(k), rows.d.values, rows.d.inside);
     }
   }
+  for (std::size_t w = 0; w < layout_.words; ++w)
+    record.inside += static_cast<std::uint64_t>(std::popcount(rows.d.inside[w]));
   joined_.begin_row();
   find_crossings(rows, j, k, true);
   const std::size_t old_cells = record.joined.size();
@@ -260,6 +263,7 @@ void VertexPass::add_features(std::size_t first, std::size_t last, BrickRecord& 
   roots_.solve(*sampler_, points_);
   const std::span<const Vec3> points(points_.data(), filled_);
   const auto& found = sharp_->finder.find(sharp_->crossings, points, first, last, record.joined, *sampler_, go_on_);
+  record.borders = sharp_->finder.borders();
   std::vector<Vec3>& all = sharp_->with_features;
   all.clear();
   auto next = found.begin();

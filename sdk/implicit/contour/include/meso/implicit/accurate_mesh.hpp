@@ -7,18 +7,19 @@
 //   auto made = make_accurate_mesh(on, Grid{.box = box}, {.tolerance = 0.02}, run, diagnostics);
 //   made->distance <= 0.02
 //
-// Distances are measured: at vertices and in the middles of edges and triangles, along the field's gradient to where it
-// is zero. The grid has only to tell what is connected to what: it starts coarse and is made finer until nearly all of
-// the mesh is near the surface. What is still too far is refined on the surface itself, where edges are halved; that
-// keeps the mesh closed. `smallest_feature`, where it is known, says how coarse the first grid may be; what is thinner
-// than the grid's spacing and hits no sample is not seen.
+// Distances are measured: at vertices, up to seven points of edges and thirteen of triangles, along the field's
+// gradient to where it is zero; and from creases of the surface to the mesh. The grid has only to tell what is
+// connected to what: it starts coarse and is made finer until nearly all of the mesh is near the surface. What is still
+// too far is refined on the surface itself, where edges are halved; that keeps the mesh closed. `smallest_feature`,
+// where it is known, says how coarse the first grid may be; what is thinner than the grid's spacing and hits no sample
+// is not seen.
 //
 // Without `sharp`, the surface is taken to be smooth: normals at vertices then tell most of the distances, which takes
 // a fifth of the samples; at a few places they are checked.
 //
 // The mesh is held in memory: some 160 bytes a triangle. Same bytes for any number of threads.
 // Errors: those of contour(), and LIMIT_TOLERANCE with what it would take; for a process that ends for want of memory
-// before this can be returned, foreseen_memory() has it. Warning: TOLERANCE_NOT_REACHED.
+// before this can be returned, foreseen_memory() has it. Warnings: TOLERANCE_NOT_REACHED, SIMPLIFY_FROM_COARSE.
 
 #include <functional>
 
