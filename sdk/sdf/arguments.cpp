@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <numbers>
 
+#include "meso/expr/dimension.hpp"
 #include "meso/implicit/field_arguments.hpp"
 
 namespace meso::sdf {
@@ -28,12 +29,34 @@ Parsed parse(std::string_view text, std::initializer_list<std::string_view> know
     for (const std::string_view k : known) among += (among.empty() ? "" : ", ") + std::string(k);
     return {.fault = {name.offset, name.text.size(), "there is no name '" + name.text + "' here, only pi, " + among}};
   }
+  if (const auto clash = expr::dimension_of(*parsed.expression, {}).clash) {
+    const auto is = [](std::string_view part, expr::Dimension dimension) {
+      return "'" + std::string(part) + "' is " + std::string(to_text(dimension));
+    };
+    return {.fault = {clash->offset, clash->length,
+                      is(clash->first, clash->first_is) + " and " + is(clash->second, clash->second_is()) +
+                          ": they cannot be added, compared or chosen between"}};
+  }
   return {.expression = std::move(parsed.expression)};
+}
+
+// A length may stand where a factor does: the ball of radius 1 is scaled by 5mm as well as by 5.
+std::optional<std::string> misfit(const expr::Expression& expression, std::string_view text, Measure measure) {
+  using expr::Dimension;
+  const Dimension is = expr::dimension_of(expression, {}).dimension;
+  const bool wrong = measure == Measure::length  ? is == Dimension::angle
+                     : measure == Measure::angle ? is == Dimension::length
+                                                 : is == Dimension::length || is == Dimension::angle;
+  if (!wrong) return std::nullopt;
+  const std::string_view wanted = measure == Measure::length  ? "a length or a number"
+                                  : measure == Measure::angle ? "an angle"
+                                                              : "a number without a unit";
+  return "'" + std::string(text) + "' is " + std::string(to_text(is)) + ", wanted is " + std::string(wanted);
 }
 
 }  // namespace
 
-NumberList read_numbers(std::string_view text, std::initializer_list<std::size_t> counts) {
+NumberList read_numbers(std::string_view text, std::initializer_list<std::size_t> counts, Measure measure) {
   const auto items = expr::split_list(text);
   if (std::find(counts.begin(), counts.end(), items.size()) == counts.end()) {
     std::string wanted;
@@ -48,6 +71,8 @@ NumberList read_numbers(std::string_view text, std::initializer_list<std::size_t
       parsed.fault.offset += item.offset;
       return {.fault = std::move(parsed.fault)};
     }
+    if (auto why = misfit(*parsed.expression, item.text, measure))
+      return {.fault = TextFault{item.offset, item.text.size(), std::move(*why)}};
     const double tau[] = {2 * std::numbers::pi};
     const auto value = expr::evaluate(*parsed.expression, tau);
     if (!value)
@@ -70,16 +95,16 @@ bool names_point(std::string_view text) {
          });
 }
 
-std::optional<TextFault> formulas_fault(std::string_view text, std::size_t count) {
+std::optional<TextFault> formulas_fault(std::string_view text, std::size_t count, Measure measure) {
   const auto items = expr::split_list(text);
-  if (items.size() != count) return read_numbers(text, {count}).fault;
+  if (items.size() != count) return read_numbers(text, {count}, measure).fault;
   bool depends = false;
   for (const auto& item : items) {
     auto fault = formula_fault(item.text);
     if (fault) return fault->offset += item.offset, fault;
     depends = depends || names_point(item.text);
   }
-  return depends ? std::nullopt : read_numbers(text, {count}).fault;
+  return depends ? std::nullopt : read_numbers(text, {count}, measure).fault;
 }
 
 implicit::Term term_of(std::string_view formula) {

@@ -21,17 +21,22 @@ struct TextFault {
   std::string why{};
 };
 
+/// What numbers of a list are; one without a unit is whatever is wanted.
+enum class Measure : std::uint8_t { length, angle, number };
+
 struct NumberList {
   std::vector<double> numbers{};
   std::optional<TextFault> fault{};
 };
 /// Constant expressions, separated by the commas outside parentheses; as many as one of `counts`, all finite.
-[[nodiscard]] NumberList read_numbers(std::string_view text, std::initializer_list<std::size_t> counts);
+[[nodiscard]] NumberList read_numbers(std::string_view text, std::initializer_list<std::size_t> counts,
+                                      Measure measure = Measure::length);
 
-/// Nothing if `text` is an expression of x, y, z.
+/// Nothing if `text` is an expression of x, y, z, and no length in it is added to an angle.
 [[nodiscard]] std::optional<TextFault> formula_fault(std::string_view text);
 /// The same of a list of `count`. REQUIRES: a text that holds no such list of numbers.
-[[nodiscard]] std::optional<TextFault> formulas_fault(std::string_view text, std::size_t count);
+[[nodiscard]] std::optional<TextFault> formulas_fault(std::string_view text, std::size_t count,
+                                                      Measure measure = Measure::length);
 /// Whether a formula asks where it is.
 [[nodiscard]] bool names_point(std::string_view text);
 

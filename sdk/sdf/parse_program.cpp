@@ -172,7 +172,8 @@ class ProgramParser {
       }
       case Follows::vector_and_number: {
         std::array<double, 7> angle{};
-        if (!numbers(word, 3, "x,y,z", made.numbers) || !numbers(word, 1, "an angle", angle)) return false;
+        if (!numbers(word, 3, "x,y,z", made.numbers) || !numbers(word, 1, "an angle", angle, Measure::angle))
+          return false;
         made.numbers[3] = angle[0];
         return true;
       }
@@ -201,12 +202,13 @@ class ProgramParser {
     const Word* given = argument(word, vocable.argument);
     if (given == nullptr) return false;
     const Word text = *given;
-    const auto read = read_numbers(text.text, {vocable.count});
+    const Measure measure = vocable.verb == Verb::density ? Measure::number : Measure::length;
+    const auto read = read_numbers(text.text, {vocable.count}, measure);
     if (!read.fault) {
       std::copy(read.numbers.begin(), read.numbers.end(), made.numbers.begin());
       return true;
     }
-    const auto fault = formulas_fault(text.text, vocable.count);
+    const auto fault = formulas_fault(text.text, vocable.count, measure);
     if (!fault) return made.text = text.text, true;
     return fail(text, Code::sdf_argument, {text.text, std::string(vocable.argument), fault->why}, *fault);
   }
@@ -277,7 +279,7 @@ class ProgramParser {
   }
 
   bool samples(const Word& word) {
-    auto given = number_list(word, {1, 3}, "a number of samples, or three along the axes");
+    auto given = number_list(word, {1, 3}, "a number of samples, or three along the axes", Measure::number);
     if (!given) return false;
     for (double& n : *given) {
       const double whole = std::round(n);
@@ -364,17 +366,18 @@ class ProgramParser {
     return nullptr;
   }
 
-  bool numbers(const Word& of, std::size_t count, std::string_view what, std::array<double, 7>& out) {
-    const auto given = number_list(of, {count}, what);
+  bool numbers(const Word& of, std::size_t count, std::string_view what, std::array<double, 7>& out,
+               Measure measure = Measure::length) {
+    const auto given = number_list(of, {count}, what, measure);
     if (given) std::copy(given->begin(), given->end(), out.begin());
     return given.has_value();
   }
 
   std::optional<std::vector<double>> number_list(const Word& of, std::initializer_list<std::size_t> counts,
-                                                 std::string_view what) {
+                                                 std::string_view what, Measure measure = Measure::length) {
     const Word* word = argument(of, what);
     if (word == nullptr) return std::nullopt;
-    auto read = read_numbers(word->text, counts);
+    auto read = read_numbers(word->text, counts, measure);
     if (!read.fault) return std::move(read.numbers);
     fail(*word, Code::sdf_argument, {word->text, std::string(what), read.fault->why}, *read.fault);
     return std::nullopt;

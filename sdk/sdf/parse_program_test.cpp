@@ -241,6 +241,30 @@ TEST(Language, EveryFaultHasItsCode) {
   }
 }
 
+// As in documents: lengths, angles and numbers are told apart where a unit says what they are.
+TEST(Language, UnitsFitWhatAWordTakes) {
+  for (const char* line : {"ball scale 5mm", "ball scale 2", "ball rotate 0,0,1 30deg", "ball rotate 0,0,1 0.5",
+                           "ball move 1mm,2cm,0", "ball -b -1mm,-1,-1,1,1,1", "ball offset '0.1mm*x'",
+                           "tpms.gyroid density 0.3", "expression 'sin(x*1deg) + y'", "ball scale '5mm/1mm'"})
+    EXPECT_TRUE(parse(line).program) << line << "\n" << parse(line).text();
+  const struct {
+    const char *line, *says;
+  } cases[] = {
+      {"ball scale '5mm+3deg'", "'5mm' is a length and '3deg' is an angle"},
+      {"ball scale 3deg", "'3deg' is an angle, wanted is a length or a number"},
+      {"ball rotate 0,0,1 5mm", "'5mm' is a length, wanted is an angle"},
+      {"ball move 1mm,2,3deg", "'3deg' is an angle"},
+      {"tpms.gyroid density 0.3mm", "'0.3mm' is a length, wanted is a number"},
+      {"ball -s 40mm", "'40mm' is a length, wanted is a number"},
+      {"expression 'x + 5mm + 3deg'", "they cannot be added"},
+  };
+  for (const auto& [line, says] : cases) {
+    const Parsed p = parse(line);
+    EXPECT_FALSE(p.program) << line;
+    EXPECT_THAT(p.text(), HasSubstr(says)) << line;
+  }
+}
+
 TEST(Language, TheCommandOfTheBodyTextLeavesTwoSolids) {
   // Figure 6 as the paper's text prints it: one intersection is missing.
   const Parsed p =
