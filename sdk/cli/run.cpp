@@ -206,7 +206,10 @@ std::optional<double> Run::value_mm(const std::string& text) { return constant(t
 std::optional<double> Run::positive_value(const std::string& text, LengthUnit unit, const char* flag) {
   const auto value = constant(text, unit);
   if (value && *value > 0) return value;
-  usage_error(std::string(flag) + ": '" + text + "' is not a positive value such as 0.1mm or 0.5rad");
+  const bool is_angle = std::string_view(flag) == "--angle";
+  usage_error(std::string(flag) + ": '" + text +
+              (is_angle ? "' is not a positive angle such as 0.5rad; its units are deg and rad"
+                        : "' is not a positive length such as 0.1mm; its units are um, mm, cm, m, in and ft"));
   return std::nullopt;
 }
 

@@ -20,8 +20,9 @@ void print_grid(const operations::ConvertReport& r, const std::string& out) {
     fmt::print(stderr, "within {:g} mm of the surface; {} samples of the field beside the grid's\n",
                r.accuracy->distance, r.accuracy->surface_samples);
   if (r.mesh)
-    fmt::print(stderr, "volume {:.6f} mm3, area {:.6f} mm2, {} in {} piece{}; ", r.mesh->volume, r.mesh->area,
-               r.mesh->closed ? "closed" : "NOT CLOSED", r.mesh->components, r.mesh->components == 1 ? "" : "s");
+    fmt::print(stderr, "volume {:.6f} mm3, area {:.6f} mm2, {} in {} piece{}{}; ", r.mesh->volume, r.mesh->area,
+               r.mesh->closed ? "closed" : "NOT CLOSED", r.mesh->components, r.mesh->components == 1 ? "" : "s",
+               r.mesh->cavities == 0 ? "" : fmt::format(" with {} closed cavities", r.mesh->cavities));
   fmt::print(stderr, "engine {} ({}), {:.2f} s\n", r.engine, r.way, r.seconds.total);
 }
 
@@ -62,6 +63,7 @@ Json report_json(const operations::ConvertReport& r, const std::string& in, cons
       j["area"] = r.mesh->area;
       j["closed"] = r.mesh->closed;
       j["components"] = r.mesh->components;
+      j["cavities"] = r.mesh->cavities;
     }
     j["bytes"] = r.bytes;
     j["seconds"] = seconds_json(r.seconds);
@@ -155,8 +157,9 @@ void add_convert(CLI::App& app, Run& run) {
   verb->add_option("--tolerance", flags.tolerance,
                    "Implicit engine: largest distance of the mesh from the surface, e.g. 0.05mm; picks the samples");
   verb->add_option("--simplify", flags.simplify,
-                   "Implicit engine: as few triangles as stay so close to the surface, e.g. 0.05mm");
-  verb->add_flag("--measure", flags.measure, "Implicit engine: volume, area and pieces of the mesh");
+                   "Implicit engine: as few triangles as stay so close to the surface, e.g. 0.05mm; beside the same "
+                   "--tolerance, samples are close enough for it");
+  verb->add_flag("--measure", flags.measure, "Implicit engine: volume, area, pieces and closed cavities of the mesh");
   add_set_flag(*verb, run.flags);
   add_part_flag(*verb, run.flags);
   add_engine_flag(*verb, run.flags);

@@ -25,14 +25,18 @@ constexpr const char* description =
     "A solid in the command language of docs/sdf.md as a mesh: .ply .stl .3mf .obj .off .vtk";
 
 /// The flags that are ours; everything else is a word.
-void add_flags(CLI::App& flags, Run& run, operations::SdfOptions& options) {
+struct Lengths {
+  std::string tolerance, simplify;
+};
+
+void add_flags(CLI::App& flags, Run& run, operations::SdfOptions& options, Lengths& lengths) {
   flags.add_flag("--polish", options.polish, "Vertices on the surface itself, to 1e-6 of a grid spacing");
   flags.add_flag("--sharp", options.sharp, "Edges and corners of the solid become edges and corners of the mesh");
-  flags
-      .add_option("--tolerance", options.tolerance, "Largest distance of the mesh from the surface; picks the samples")
-      ->check(CLI::PositiveNumber);
-  flags.add_option("--simplify", options.simplify, "As few triangles as stay so close to the surface")
-      ->check(CLI::PositiveNumber);
+  flags.add_option("--tolerance", lengths.tolerance,
+                   "Largest distance of the mesh from the surface, e.g. 0.01 or 10um; picks the samples");
+  flags.add_option("--simplify", lengths.simplify,
+                   "As few triangles as stay so close to the surface; beside the same --tolerance, samples are close "
+                   "enough for it");
   flags.add_flag("--no-slivers", options.no_slivers, "Collapse very narrow triangles");
   flags.add_flag("--strict-math", options.strict_math, "Formulas as written, none regrouped");
   flags.add_flag("--double", options.double_coordinates, "Coordinates in double precision (not .stl)");
@@ -197,7 +201,8 @@ int sdf_verb(Run& run, const std::vector<std::string>& words) {
   CLI::App flags;
   flags.set_help_flag();  // -h is a word
   operations::SdfOptions options;
-  add_flags(flags, run, options);
+  Lengths lengths;
+  add_flags(flags, run, options, lengths);
   operations::VolumeOptions volume;
   add_volume_flags(flags, volume);
   const std::vector<sdf::CallerFlag> ours = caller_flags(flags);
@@ -210,6 +215,11 @@ int sdf_verb(Run& run, const std::vector<std::string>& words) {
   if (!take_flags(flags, program->caller_flags, run)) return run.finish(Json::object());
   if (program->asks == sdf::Program::Asks::help) return print_help(flags), 0;
   if (program->asks == sdf::Program::Asks::version) return fmt::print("{}\n", MESO_VERSION), 0;
+  const auto length = [&](const std::string& text, const char* flag) {
+    return text.empty() ? 0 : run.length_mm(text, LengthUnit::millimeter, flag).value_or(0);
+  };
+  options.tolerance = length(lengths.tolerance, "--tolerance");
+  options.simplify = length(lengths.simplify, "--simplify");
   options.run = run.options();
   options.existing = run.existing_file();
   options.measure = run.flags.json;

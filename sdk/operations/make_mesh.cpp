@@ -9,6 +9,7 @@
 #include "load_sdf_mesh.hpp"
 #include "measured_mesh_sink.hpp"
 #include "mesh_grid.hpp"
+#include "mesh_warnings.hpp"
 #include "meso/base/memory_mesh_sink.hpp"
 #include "meso/base/number.hpp"
 #include "meso/brep/read_step.hpp"
@@ -49,6 +50,7 @@ struct Built {
   implicit::Field field;
   std::string names;  ///< of the parts
   double smallest_feature_mm = HUGE_VAL;
+  double density_spacing_mm = HUGE_VAL;
   brep::CellCounts cells;
   std::optional<sdf::Program> words{};  ///< of a document that is words
 };
@@ -88,6 +90,7 @@ std::optional<Built> build(const eval::Evaluation& evaluation, const MakeOptions
     else
       all->field = implicit::union_of(all->field, placed), all->names += ", " + item.part->id.text;
     all->smallest_feature_mm = std::min(all->smallest_feature_mm, part->smallest_feature_mm);
+    all->density_spacing_mm = std::min(all->density_spacing_mm, part->density_spacing_mm);
     all->cells.placed += part->cells_placed;
     all->cells.kept += part->cells_kept;
   }
@@ -100,6 +103,22 @@ void warn_of_clamped(const Built& built, const Box3& box, DiagnosticSink& sink) 
   std::vector<sdf::Clamped> clamped = sdf::clamped_values(*built.words, box);
   std::erase_if(clamped, [](const sdf::Clamped& c) { return c.made_by->verb != sdf::Verb::density; });
   sdf::report_clamped(clamped, sink);
+}
+
+/// Of what samples as far apart as these do not show.
+void warn_of_samples(const Built& built, const MakeOptions& options, const ConvertReport& report,
+                     DiagnosticSink& sink) {
+  if (report.mesh) warn_of_cavities(*report.mesh, sink);
+  if (built.words && warn_of_period(*built.words, report.spacing_mm, sink)) return;
+  const bool is_told = built.smallest_feature_mm < 2 * report.spacing_mm && !options.tolerance_mm;
+  if (!is_told && warn_of_thinness(report.thickness_mm, report.spacing_mm, sink)) return;
+  constexpr double promised = 0.002;
+  const double finer = built.density_spacing_mm, times = report.spacing_mm / finer;
+  if (options.tolerance_mm || !(times > 1.02)) return;
+  const double percent = std::min(100.0, 100 * promised * times * times);
+  sink.report(
+      {.code = Code::density_below_spacing,
+       .args = {built.names, significant(percent, 2), significant(report.spacing_mm, 3), significant(finer, 2)}});
 }
 
 /// Streams from the grid; or, from a tolerance or simplified, by way of a mesh in memory. Tells the report.
@@ -120,8 +139,10 @@ bool stream_mesh(const Built& built, const implicit::Grid& grid, const MakeOptio
                                    {.coordinate_step = implicit::float_step(grid.box), .sharp = options.sharp},
                                    options.run, sink)
                : std::nullopt;
-    if (contoured) tell(grid, contoured->triangles);
-    return contoured.has_value();
+    if (!contoured) return false;
+    tell(grid, contoured->triangles);
+    report.thickness_mm = contoured->cells_thick() * report.spacing_mm;
+    return true;
   }
   const double feature = std::isfinite(built.smallest_feature_mm) ? built.smallest_feature_mm : 0;
   const double tolerance = options.tolerance_mm.value_or(0);
@@ -137,6 +158,7 @@ bool stream_mesh(const Built& built, const implicit::Grid& grid, const MakeOptio
     sink.report({.code = Code::feature_below_tolerance,
                  .args = {built.names, format_number(feature) + " mm", format_number(tolerance) + " mm"}});
   tell(made->grid, made->mesh.triangles.size());
+  report.thickness_mm = thickness_of(made->mesh);
   report.accuracy = {
       .distance = made->distance, .grid_samples = made->grid_samples, .surface_samples = made->surface_samples};
   return write_mesh(made->mesh, into);
@@ -201,6 +223,7 @@ std::optional<ConvertReport> make_mesh(const eval::Evaluation& evaluation, const
   if (!write_mesh_file(*built, *grid, out, options, write, report, sink)) return std::nullopt;
   report.seconds.write = watch.lap();
   warn_of_clamped(*built, grid->box, sink);
+  warn_of_samples(*built, options, report, sink);
   report.seconds.total = watch.total();
   return report;
 }

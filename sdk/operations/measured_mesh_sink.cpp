@@ -169,6 +169,7 @@ MeshMeasures MeasuredMeshSink<Real>::measures(double crumb) const {
   for (std::uint32_t i = 0; i < parents_.size(); ++i) {
     if (parents_[i] != i) continue;
     ++(std::abs(enclosed_[i]) < crumb ? out.crumbs : enclosed_[i] > 0 ? out.components : out.cavities);
+    if (std::abs(enclosed_[i]) >= crumb && enclosed_[i] < 0) out.cavity_volume -= enclosed_[i];
   }
   return out;
 }

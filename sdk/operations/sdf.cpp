@@ -11,6 +11,7 @@
 
 #include "load_sdf_mesh.hpp"
 #include "measured_mesh_sink.hpp"
+#include "mesh_warnings.hpp"
 #include "meso/base/memory_mesh_sink.hpp"
 #include "meso/base/number.hpp"
 #include "meso/export_mesh/mesh_writer.hpp"
@@ -118,6 +119,7 @@ class Job {
   DiagnosticSink& sink_;
   std::optional<implicit::Field> field_;
   bool certainly_empty_ = false;
+  double thickness_ = 0;  // of the mesh
   SdfReport report_;
 };
 
@@ -145,6 +147,7 @@ bool Job::make_accurate(MeshSink& into) {
   report_.points = made->mesh.points.size();
   report_.triangles = made->mesh.triangles.size();
   report_.euler = made->euler;
+  thickness_ = thickness_of(made->mesh);
   report_.accuracy = {
       .distance = made->distance, .grid_samples = made->grid_samples, .surface_samples = made->surface_samples};
   return write_mesh(made->mesh, into);
@@ -176,6 +179,7 @@ bool Job::contour_into(MeshSink& writer) {
                          .collapse_slivers = options_.no_slivers},
                         options_.run, sink_);
   if (!contoured) return false;
+  thickness_ = contoured->cells_thick() * largest_spacing(report_.grid);
   report_.points = contoured->points;
   report_.triangles = contoured->triangles;
   report_.euler = contoured->euler;
@@ -225,6 +229,7 @@ bool Job::extrapolate() {
 }
 
 void Job::warn(const Output& output) const {
+  if (report_.measures) warn_of_cavities(*report_.measures, sink_);
   if (report_.triangles == 0) sink_.report({.code = Code::sdf_empty, .args = {program_.output}});
   const bool rounded = warn_of_rounding(output);
   sdf::report_clamped(sdf::clamped_values(program_, report_.grid.box), sink_);
@@ -240,9 +245,8 @@ void Job::warn(const Output& output) const {
                  .args = {word.text, format_number(wall->thickness), format_number(spacing)}};
     point_at(d, word);
     sink_.report(std::move(d));
-  } else if (!rounded && report_.measures && 2 * report_.measures->volume < spacing * report_.measures->area) {
-    const double thickness = 2 * report_.measures->volume / report_.measures->area;
-    sink_.report({.code = Code::sdf_coarse, .args = {format_number(thickness), format_number(spacing)}});
+  } else if (!warn_of_period(program_, spacing, sink_) && !rounded) {
+    warn_of_thinness(thickness_, spacing, sink_);
   }
 }
 

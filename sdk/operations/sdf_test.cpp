@@ -43,7 +43,8 @@ class Sdf : public testing::Test {
   }
   MeshMeasures measure(const std::string& line) {
     const auto report = run(line);
-    for (const Diagnostic& d : sink_.diagnostics()) ADD_FAILURE() << line << "\n" << render(d);
+    for (const Diagnostic& d : sink_.diagnostics())
+      if (d.code != Code::cavities_closed) ADD_FAILURE() << line << "\n" << render(d);
     if (!report || !report->measures) return {};
     EXPECT_TRUE(report->measures->closed) << line;
     EXPECT_EQ(report->measures->triangles, report->triangles) << line;
@@ -103,6 +104,34 @@ TEST_F(Sdf, ClosedForms) {
     EXPECT_EQ(m.crumbs, 0u) << truth.words;
     EXPECT_EQ(m.euler, truth.euler) << truth.words;
   }
+}
+
+// Whether or not anything is measured.
+TEST_F(Sdf, TellsWhatSamplesDoNotShow) {
+  const struct {
+    const char* line;
+    Code code;  // internal: nothing is told
+  } cases[] = {
+      {"tpms.gyroid shell 0.02 -s 40^3", Code::sdf_coarse},
+      {"tpms.gyroid shell 0.7 -s 40^3", Code::internal},
+      {"ball -s 20^3", Code::internal},
+      {"tpms.gyroid scale 0.05 -s 50^3", Code::period_below_spacing},
+      {"strut.bcc 0.1 scale 0.1 -s 30^3", Code::sdf_thin_wall},
+      {"tpms.gyroid -s 40", Code::period_below_spacing},
+  };
+  for (const auto& [line, code] : cases)
+    for (const bool measured : {false, true}) {
+      EXPECT_TRUE(run(line, {.measure = measured}));
+      EXPECT_EQ(this->code(), code) << line;
+      EXPECT_EQ(sink_.diagnostics().size(), code == Code::internal ? 0u : 1u) << line;
+    }
+}
+
+TEST_F(Sdf, TellsOfClosedCavities) {
+  EXPECT_TRUE(run("ball shell 0.2 -s 60^3"));
+  ASSERT_EQ(code(), Code::cavities_closed);
+  EXPECT_EQ(sink_.diagnostics()[0].args[0], "1");
+  EXPECT_NEAR(std::stod(sink_.diagnostics()[0].args[1]), 4 * pi / 3 * 0.729, 0.03);
 }
 
 TEST_F(Sdf, Hourglass) {
@@ -196,7 +225,7 @@ TEST_F(Sdf, WarnsWhereSamplesAreTooFarApart) {
       {"ball shell 0.01 -s 40^3", Code::sdf_thin_wall},
       {"box move 2,0,0 ball scale 2 shell 1/32 union -s 30^3", Code::sdf_thin_wall},
       {"tpms.gyroid shell 0.02 -s 40^3", Code::sdf_coarse},
-      {"ball shell 0.2 -s 40^3", Code::internal},
+      {"ball shell 0.2 -s 40^3", Code::cavities_closed},
       {"tpms.gyroid shell 0.7 -s 60^3", Code::internal}};
   for (const auto& [words, warning] : cases) {
     ASSERT_TRUE(run(words)) << words;

@@ -16,6 +16,7 @@ struct VolumeJob {
   Box3 box;
   std::array<std::int32_t, 3> samples{};
   DiagnosticSink& sink;
+  const sdf::Program& program;
   VolumeReport report{};
 
   /// Nothing: stopped, reported.

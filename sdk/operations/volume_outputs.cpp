@@ -7,6 +7,7 @@
 #include <numbers>
 #include <system_error>
 
+#include "mesh_warnings.hpp"
 #include "meso/base/number.hpp"
 #include "meso/export_tetra_mesh/write_tet_mesh.hpp"
 #include "meso/implicit/stuffing.hpp"
@@ -128,6 +129,8 @@ bool write_tetrahedra(VolumeJob& job) {
   job.report.cells = lattice.cells;
   if (mesh.tets.empty()) {
     job.sink.report({.code = Code::sdf_empty, .args = {job.path}});
+  } else if (warn_of_period(job.program, lattice.spacing, job.sink)) {
+    // It is not that solid: nothing else counts.
   } else if (const double thickness = thickness_of(mesh, quality.volume); thickness < lattice.spacing) {
     job.sink.report({.code = Code::sdf_coarse, .args = {format_number(thickness), format_number(lattice.spacing)}});
   }
@@ -174,7 +177,8 @@ std::optional<VolumeReport> run_volume(const sdf::Program& program, const Volume
   if (!field) return std::nullopt;
   const auto box = sdf::box_of(program, *field, sink);
   if (!box) return std::nullopt;
-  VolumeJob job{.path = program.output, .options = options, .field = *field, .box = box->box, .sink = sink};
+  VolumeJob job{
+      .path = program.output, .options = options, .field = *field, .box = box->box, .sink = sink, .program = program};
   if (program.samples.size() == 1) {
     job.samples = implicit::nodes_for_total(job.box, program.samples[0]);
   } else {
@@ -184,6 +188,7 @@ std::optional<VolumeReport> run_volume(const sdf::Program& program, const Volume
                        : is_voxels(extension)   ? write_voxels(job)
                                                 : write_slices(job);
   if (!written) return std::nullopt;
+  if (!is_tetrahedra(extension)) warn_of_period(program, spacing_of_samples(job), sink);
   std::error_code error;
   if (job.report.bytes == 0) job.report.bytes = std::filesystem::file_size(program.output, error);
   if (error) job.report.bytes = 0;

@@ -117,6 +117,7 @@ class PartMaker {
     result_.cells_placed += pattern->placed;
     result_.cells_kept += pattern->kept;
     result_.smallest_feature_mm = std::min(result_.smallest_feature_mm, pattern->smallest_feature_mm);
+    result_.density_spacing_mm = std::min(result_.density_spacing_mm, pattern->density_spacing_mm);
     // Whole cells stand for themselves.
     if (rule != BoundaryRule::clip && apply.operation == ApplyOperation::intersection) return pattern->field;
     return combined(body, pattern->field, apply.operation, *around);

@@ -1,10 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // Values that differ from point to point, shares, walls, blends and sizes of implicit cells, against closed forms and
 // against integrals of the result.
+#include <array>
 #include <cmath>
 #include <numbers>
 
+#include "density_spacing.hpp"
 #include "document_for_test.hpp"
+#include "meso/base/memory_mesh_sink.hpp"
+#include "meso/implicit/compile.hpp"
+#include "meso/implicit/contour.hpp"
 
 namespace meso::implicit {
 namespace {
@@ -33,6 +38,55 @@ double share(const Field& field, const Box3& box, int along = 64) {
       for (const double v : values) inside += v < 0;
     }
   return inside / (double(along) * along * along);
+}
+
+double volume_on_grid(const Term& body, const Box3& box, double spacing) {
+  Grid grid{.box = box};
+  for (std::size_t a = 0; a < 3; ++a)
+    grid.nodes[a] = static_cast<std::int32_t>(std::ceil((box.max[a] - box.min[a]) / spacing)) + 1;
+  DiagnosticSink sink;
+  TriangleMesh mesh;
+  MemoryMeshSink into(mesh);
+  const auto source = compile(body, grid, {}, {}, sink);
+  EXPECT_TRUE(source && contour(*source, into, {}, {}, sink));
+  double volume = 0;
+  for (const auto& [a, b, c] : mesh.triangles) volume += dot(mesh.points[a], cross(mesh.points[b], mesh.points[c])) / 6;
+  return volume;
+}
+
+// At the spacing that is told, meshes hold the share to 0.2 %; at three times that, nine times less well. Shares of
+// levels by an independent count.
+TEST(Gradings, TellTheSpacingThatHoldsAShare) {
+  const std::array<Term, 3> xyz{Term::coordinate(0), Term::coordinate(1), Term::coordinate(2)};
+  const auto term = [&](const char* text) {
+    return Term::from_expression(*expr::parse_expression(text, LengthUnit::millimeter).expression, xyz);
+  };
+  const Term gyroid = term("cos(2*pi*x)*sin(2*pi*y) + cos(2*pi*y)*sin(2*pi*z) + cos(2*pi*z)*sin(2*pi*x)"),
+             p = term("cos(2*pi*x) + cos(2*pi*y) + cos(2*pi*z)"), level = Term::constant(0.35);
+  const struct {
+    Term body;
+    double share;
+  } cases[] = {{gyroid + level, 0.3871}, {p + level, 0.4001}, {abs(gyroid) - level, 0.2259}};
+  const Box3 box{{0, 0, 0}, {1, 1, 1}};
+  for (const auto& [body, share] : cases) {
+    const double spacing = spacing_for_share(body, box, share);
+    EXPECT_GT(spacing, 1.0 / 100) << share;
+    EXPECT_LT(spacing, 1.0 / 15) << share;
+    EXPECT_NEAR(volume_on_grid(body, box, spacing) / share, 1, 0.003) << share;
+    EXPECT_GT(std::fabs(volume_on_grid(body, box, 3 * spacing) / share - 1), 0.008) << share;
+  }
+}
+
+TEST(Gradings, TellTheSpacingOfTheLeastShare) {
+  const TestDocument graded(block("<implicit surface='gyroid' density='s'/>",
+                                  "<set parameter='s' value='0.15 + 0.02*global.x' at='point'/>", 2, 1, 1,
+                                  "<parameter id='s' value='0.3'/>"));
+  const TestDocument sparse(block("<implicit surface='gyroid' density='0.15'/>", "", 1, 1, 1));
+  const TestDocument dense(block("<implicit surface='gyroid' density='0.3'/>", "", 1, 1, 1));
+  EXPECT_NEAR(graded.made->density_spacing_mm, sparse.made->density_spacing_mm, 0.02);
+  EXPECT_LT(sparse.made->density_spacing_mm, 0.8 * dense.made->density_spacing_mm);
+  const TestDocument level(block("<implicit surface='gyroid'/>", "", 1, 1, 1));
+  EXPECT_EQ(level.made->density_spacing_mm, HUGE_VAL);
 }
 
 TEST(Gradings, AParameterFollowsPositionFromPointToPoint) {

@@ -175,7 +175,7 @@ std::optional<Term> ImplicitCells::body(const eval::PlacedCell& cell, const eval
     const Term distance = distance_to_level(made->function, use.edge_mm / 8, thickest / 2 + use.edge_mm / 8);
     return abs(distance) - 0.5 * *made->wall_mm;
   }
-  const auto level = made->share ? level_for(*made, *values, box, points) : std::optional(made->level);
+  const auto level = made->share ? level_for(*made, *values, box, use, points) : std::optional(made->level);
   // How steep it is, in the cell's own coordinates.
   CellPoint own;
   own.is_in_box = true;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <set>
 
+#include "density_spacing.hpp"
 #include "implicit_cell.hpp"
 #include "meso/base/number.hpp"
 #include "meso/implicit/flat_term.hpp"
@@ -130,8 +131,25 @@ bool ImplicitCells::check_shares(const Term& share, const DensityTable& table, c
   return true;
 }
 
+// The least and the largest share are contoured in a cell of their own. Shares near those that were seen take about the
+// same samples.
+void ImplicitCells::see_shares(std::span<const double> shares, const DensityTable& table, const Term& function,
+                               std::span<const double> at, const eval::BoxShape& box, double edge_mm) {
+  constexpr double near = 0.04;
+  if (shares.empty()) return;
+  const auto [least, most] = std::ranges::minmax(shares);
+  for (const double share : {least, most}) {
+    std::vector<double>& seen = seen_shares_[&table];
+    if (std::ranges::any_of(seen, [&](double s) { return std::fabs(s - share) < near; })) continue;
+    seen.push_back(share);
+    const Term body = function - Term::constant(table.level(share, at));
+    density_spacing_ =
+        std::min(density_spacing_, edge_mm * spacing_for_share(body, {box.corner, box.corner + box.size}, share));
+  }
+}
+
 std::optional<Term> ImplicitCells::level_for(const Parts& made, const Values& values, const eval::BoxShape& box,
-                                             std::span<const Vec3> points) {
+                                             const BodyUse& use, std::span<const Vec3> points) {
   const std::vector<bool> shapes = shaping();
   std::vector<std::size_t> free;
   std::vector<Term> at;
@@ -156,19 +174,20 @@ std::optional<Term> ImplicitCells::level_for(const Parts& made, const Values& va
     return std::nullopt;
   }
   auto& table = tables_[key];
-  if (!table) {
-    CellPoint own;
-    own.is_in_box = true;
-    for (std::size_t i = 0; i < 3; ++i) own.local[i] = Term::coordinate(i);
-    const auto function = [&](std::span<const double> chosen) {
-      Values fixed = values;
-      for (std::size_t k = 0; k < free.size(); ++k) fixed[free[k]] = Term::constant(chosen[k]);
-      const auto one = parts(fixed, box, own);
-      return one ? one->function : Term::constant(NAN);
-    };
-    table = std::make_shared<const DensityTable>(function, DensityTable::Room{box.corner, box.size}, ranges);
-  }
+  CellPoint own;
+  own.is_in_box = true;
+  for (std::size_t i = 0; i < 3; ++i) own.local[i] = Term::coordinate(i);
+  const auto function = [&](std::span<const double> chosen) {
+    Values fixed = values;
+    for (std::size_t k = 0; k < free.size(); ++k) fixed[free[k]] = Term::constant(chosen[k]);
+    const auto one = parts(fixed, box, own);
+    return one ? one->function : Term::constant(NAN);
+  };
+  if (!table) table = std::make_shared<const DensityTable>(function, DensityTable::Room{box.corner, box.size}, ranges);
   if (!check_shares(*made.share, *table, at, points)) return std::nullopt;
+  std::vector<double> middle;
+  for (const Interval& range : ranges) middle.push_back((range.lo + range.hi) / 2);
+  see_shares(values_at(*made.share, points), *table, function(middle), middle, box, use.edge_mm);
   if (made.share->is_constant() && at.empty()) return Term::constant(table->level(made.share->node().number, {}));
   return density_level(table, *made.share, std::move(at));
 }

@@ -409,6 +409,7 @@ std::optional<PatternField> Maker::make(const KeepCell& keep, const RunOptions& 
   }
   if (!field) return std::nullopt;
   result.smallest_feature_mm = std::min(result.smallest_feature_mm, bodies_.thinnest_wall_mm());
+  result.density_spacing_mm = bodies_.density_spacing_mm();
   result.field = *field;
   return result;
 }

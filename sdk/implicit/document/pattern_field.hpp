@@ -20,6 +20,7 @@ namespace meso::implicit {
 struct PatternField {
   Field field;
   double smallest_feature_mm = HUGE_VAL;
+  double density_spacing_mm = HUGE_VAL;
   std::uint64_t placed = 0, kept = 0;
 };
 

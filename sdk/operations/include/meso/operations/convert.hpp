@@ -100,6 +100,7 @@ struct ConvertReport {
   // Of the implicit engine: its grid, and instead of `measures` those of the mesh if they are asked for.
   std::array<std::int32_t, 3> grid_nodes{};
   double spacing_mm = 0;
+  double thickness_mm = 0;  ///< twice the volume over the area, about; 0: not known
   std::optional<MeshMeasures> mesh;
   std::optional<MeshAccuracy> accuracy;  ///< of a tolerance or a simplified mesh
   Seconds seconds;

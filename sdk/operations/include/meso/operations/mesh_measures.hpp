@@ -15,6 +15,7 @@ struct MeshMeasures {
   // cavity a negative one.
   std::uint64_t components = 0;  ///< pieces of the solid
   std::uint64_t cavities = 0;    ///< hollows within them that nothing connects with the outside
+  double cavity_volume = 0;      ///< of all of them
   std::uint64_t crumbs = 0;      ///< shells of either kind too small to count among these
   /// Every edge is run through as often in one direction as in the other; wrong with a chance of 2^-64.
   bool closed = false;

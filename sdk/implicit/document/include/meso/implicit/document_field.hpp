@@ -44,6 +44,9 @@ struct PartField {
   Field field;
   /// The thinnest strut, ball or cell wall as far as the document's numbers tell; infinity if nothing does.
   double smallest_feature_mm = HUGE_VAL;
+  /// How far apart samples may be for implicit cells to hold their stated densities within 0.2 %; infinity if none is
+  /// stated.
+  double density_spacing_mm = HUGE_VAL;
   std::uint64_t cells_placed = 0, cells_kept = 0;
   std::uint64_t fragments = 0;  ///< dropped
 };
