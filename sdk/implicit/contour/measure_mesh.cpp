@@ -140,6 +140,9 @@ void RefinableMesh::measure(double tolerance) {
 
 void RefinableMesh::measure_edges(double tolerance) {
   std::vector<Edge> edges;
+  std::size_t open = 0;  // no more is taken than that: there may be millions
+  for (const Known& known : known_) open += static_cast<std::size_t>(std::ranges::count(known.edge, unknown));
+  edges.reserve(open);
   for (std::uint32_t t = 0; t < known_.size(); ++t)
     for (std::uint8_t side = 0; side < 3; ++side) {
       if (known_[t].edge[side] != unknown) continue;

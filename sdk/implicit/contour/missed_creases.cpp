@@ -51,11 +51,18 @@ std::vector<double> distances_to(const TriangleMesh& mesh, std::span<const Vec3>
 // mesh is some way off. Nearer, even a wedge of 20 degrees ends within the tolerance.
 std::vector<RefinableMesh::Missed> RefinableMesh::possibly_missed(double tolerance) const {
   constexpr double off = 0.15, turned = 0.9;
+  const auto are_sheets = [&](Vec3 p, Vec3 q) { return dot(p, q) < turned * norm(p) * norm(q); };
+  std::vector<char> beside(mesh_.points.size(), 0);  // two sheets meet in one of the point's triangles
+  for (const auto& [a, b, c] : mesh_.triangles)
+    if (are_sheets(gradients_[a], gradients_[b]) || are_sheets(gradients_[b], gradients_[c]) ||
+        are_sheets(gradients_[c], gradients_[a]))
+      beside[a] = beside[b] = beside[c] = 1;
   std::vector<Edge> edges;
   for (std::uint32_t t = 0; t < known_.size(); ++t)
     for (std::uint8_t side = 0; side < 3; ++side) {
       const float known = known_[t].edge[side];
       if (known == unknown || !(std::fabs(known) > off * tolerance)) continue;
+      if (beside[mesh_.triangles[t][side]] == 0 || beside[mesh_.triangles[t][(side + 1U) % 3]] == 0) continue;
       const std::uint32_t a = mesh_.triangles[t][side], b = mesh_.triangles[t][(side + 1) % 3];
       edges.push_back({std::min(a, b), std::max(a, b), t, side});
     }
@@ -67,8 +74,7 @@ std::vector<RefinableMesh::Missed> RefinableMesh::possibly_missed(double toleran
     const std::uint32_t c = mesh_.triangles[one.triangle][(one.side + 2U) % 3],
                         d = mesh_.triangles[other.triangle][(other.side + 2U) % 3];
     const auto are_two_sheets = [&](std::uint32_t p, std::uint32_t q) {
-      const Vec3 np = within(planes, gradients_[p]), nq = within(planes, gradients_[q]);
-      return dot(np, nq) < turned * norm(np) * norm(nq);
+      return are_sheets(within(planes, gradients_[p]), within(planes, gradients_[q]));
     };
     for (const auto& [p, q] : {std::pair{one.a, one.b}, std::pair{c, d}})
       if (are_two_sheets(p, q) && (p == one.a || planes == 0))

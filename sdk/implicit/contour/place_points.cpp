@@ -42,7 +42,16 @@ std::vector<RefinableMesh::Flip> RefinableMesh::possible_flips(double tolerance)
     const Edge &one = far[e], &other = far[e + 1];
     const std::uint32_t c = mesh_.triangles[one.triangle][(one.side + 2) % 3];
     const std::uint32_t d = mesh_.triangles[other.triangle][(other.side + 2) % 3];
-    if (c != d && (planes_[one.a] & planes_[one.b]) == 0) flips.push_back({one, other.triangle, other.side, c, d});
+    if (c == d || (planes_[one.a] & planes_[one.b]) != 0) continue;
+    // On one sheet, halves are nearer.
+    const std::array<std::uint32_t, 4> corners{one.a, one.b, c, d};
+    bool turns = false;
+    for (std::size_t i = 1; i < 4; ++i)
+      for (std::size_t j = 0; j < i; ++j) {
+        const Vec3 p = gradients_[corners[i]], q = gradients_[corners[j]];
+        turns = turns || !(dot(p, q) >= 0.9 * norm(p) * norm(q));
+      }
+    if (turns) flips.push_back({one, other.triangle, other.side, c, d});
   }
   return flips;
 }
@@ -63,41 +72,58 @@ void RefinableMesh::turn(const Flip& flip) {
   known_[u] = other;
 }
 
+// Those all of whose points are within the tolerance. What is asked of a point takes more memory than a flip.
+template <class Points>
+void RefinableMesh::keep_near(std::vector<Flip>& flips, double tolerance, Points points_of) {
+  std::vector<Flip> kept;
+  std::vector<PointNearSurface> asked;
+  std::vector<double> distances;
+  for (std::size_t i = 0; i < flips.size();) {
+    const std::size_t first = i;
+    asked.clear();
+    for (; i < flips.size() && asked.size() < asked_at_once; ++i) {
+      const std::size_t begin = asked.size();
+      points_of(flips[i], asked);
+      for (std::size_t n = begin; n < asked.size(); ++n)
+        asked[n].ahead = normal_of(flips[i].edge.triangle) + normal_of(flips[i].other);
+    }
+    feet_.distances(asked, tolerance, distances);
+    const std::size_t each = asked.size() / (i - first);
+    for (std::size_t f = first; f < i; ++f) {
+      const auto of_flip = std::span(distances).subspan(each * (f - first), each);
+      if (std::ranges::all_of(of_flip, [&](double d) { return d <= tolerance; })) kept.push_back(flips[f]);
+    }
+  }
+  flips = std::move(kept);
+}
+
 // Where neighbours have come to a crease, an edge between its sheets is left over that goes through nothing or through
 // the solid: the other diagonal of its two triangles does not.
 void RefinableMesh::flip(double tolerance) {
   if (smooth_) return;
-  const std::vector<Flip> flips = possible_flips(tolerance);
-  if (flips.empty()) return;
-  std::vector<char> marked(mesh_.points.size(), 0), turned(mesh_.triangles.size(), 0);
-  // Of the new edge, and in the middles of its triangles.
-  constexpr std::array<double, 7> along{0.125, 0.25, 0.375, 0.5, 0.625, 0.75, 0.875};
-  constexpr std::size_t each = along.size() + 2;
-  std::vector<PointNearSurface> asked;
-  for (const Flip& f : flips) {
-    marked[f.c] = marked[f.d] = 1;
-    const Vec3 ahead = normal_of(f.edge.triangle) + normal_of(f.other);
-    for (const double share : along) asked.push_back(between(f.c, f.d, share));
+  std::vector<Flip> flips = possible_flips(tolerance);
+  // The middles of the new edge and of its triangles; then the rest of the edge, of the few that are left.
+  keep_near(flips, tolerance, [&](const Flip& f, std::vector<PointNearSurface>& asked) {
+    asked.push_back(middle_of(f.c, f.d));
     for (const std::uint32_t end : {f.edge.a, f.edge.b}) {
       const double most = norm(mesh_.points[end] - mesh_.points[f.c]) + norm(mesh_.points[end] - mesh_.points[f.d]);
       asked.push_back({.point = (mesh_.points[f.c] + mesh_.points[f.d] + mesh_.points[end]) / 3, .most = most});
     }
-    for (std::size_t i = asked.size() - each; i < asked.size(); ++i) asked[i].ahead = ahead;
-  }
+  });
+  keep_near(flips, tolerance, [&](const Flip& f, std::vector<PointNearSurface>& asked) {
+    for (const double share : {0.125, 0.25, 0.375, 0.625, 0.75, 0.875}) asked.push_back(between(f.c, f.d, share));
+  });
+  if (flips.empty()) return;
+  std::vector<char> marked(mesh_.points.size(), 0), turned(mesh_.triangles.size(), 0);
+  for (const Flip& f : flips) marked[f.c] = marked[f.d] = 1;
   std::set<std::pair<std::uint32_t, std::uint32_t>> edges;  // no edge may be there twice
   for (const auto& t : mesh_.triangles)
     for (std::size_t side = 0; side < 3; ++side) {
       const std::uint32_t a = t[side], b = t[(side + 1) % 3];
       if (a < b && marked[a] != 0 && marked[b] != 0) edges.emplace(a, b);
     }
-  std::vector<double> distances;
-  feet_.distances(asked, tolerance, distances);
-  for (std::size_t i = 0; i < flips.size(); ++i) {
-    const Flip& f = flips[i];
-    const auto of_flip = std::span(distances).subspan(each * i, each);
-    if (std::ranges::any_of(of_flip, [&](double d) { return !(d <= tolerance); }) || turned[f.edge.triangle] != 0 ||
-        turned[f.other] != 0)
-      continue;
+  for (const Flip& f : flips) {
+    if (turned[f.edge.triangle] != 0 || turned[f.other] != 0) continue;
     if (!edges.emplace(std::min(f.c, f.d), std::max(f.c, f.d)).second) continue;
     turn(f);
     turned[f.edge.triangle] = turned[f.other] = 1;

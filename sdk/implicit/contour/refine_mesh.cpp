@@ -126,6 +126,11 @@ std::size_t RefinableMesh::refine(double tolerance) {
       normals[halved[t][side]] += normal_of(t);
     }
   const auto first = static_cast<std::uint32_t>(mesh_.points.size());
+  // Grown by doubling, they would hold twice as much.
+  mesh_.points.reserve(first + cuts.size());
+  planes_.reserve(first + cuts.size());
+  gradients_.reserve(first + cuts.size());
+  distances_.reserve(first + cuts.size());
   std::vector<PointNearSurface> middles;
   for (std::size_t i = 0; i < cuts.size(); ++i) {
     middles.push_back(between(cuts[i].edge.a, cuts[i].edge.b, cuts[i].share));
@@ -138,6 +143,10 @@ std::size_t RefinableMesh::refine(double tolerance) {
     place(std::span(cuts).subspan(i + 1 - middles.size(), middles.size()), middles, tolerance);
     middles.clear();
   }
+  std::size_t added = 0;
+  for (const auto& middles_of : halved) added += 3 - static_cast<std::size_t>(std::ranges::count(middles_of, none));
+  mesh_.triangles.reserve(mesh_.triangles.size() + added);
+  known_.reserve(known_.size() + added);
   for (std::uint32_t t = 0; t < halved.size(); ++t) {
     for (std::uint32_t& middle : halved[t])
       if (middle != none) middle += first;

@@ -112,6 +112,8 @@ class RefinableMesh {
   // place_points.cpp
   struct Flip;
   [[nodiscard]] std::vector<Flip> possible_flips(double tolerance) const;
+  template <class Points>
+  void keep_near(std::vector<Flip>& flips, double tolerance, Points points_of);
   void turn(const Flip& flip);
   [[nodiscard]] bool is_bridge(std::uint32_t triangle) const;
   void divide(std::span<const std::uint32_t> triangles, double tolerance);
