@@ -318,26 +318,31 @@ Thickness strut_thickness(const eval::CellStream& cells, DiagnosticSink& sink) {
 
 namespace {
 
-/// Where a line of a body ends in the pole of a ball, a second attempt keeps poles out of the cell.
+/// Where a line of a body ends in the pole of a ball, or a face touches one, a second attempt keeps poles out of the
+/// cell: sooner than the cell as it is in all ways.
 std::optional<ClippedLattice> clipped_lattice(const Found& found, const Index3& last, const LatticeRequest& request,
                                               const SolidContext& context) {
-  const ClipOptions options{.mesh = request.mesh,
-                            .reuse = true,
-                            .block = found.lattice.block,
-                            .pieces = request.pieces,
-                            .added = found.added,
-                            .fused = request.fused};
-  const auto attempt = [&](const CellShape& cell, DiagnosticSink& sink) {
+  using Ways = CellClipper::Ways;
+  const auto attempt = [&](const CellShape& cell, Ways ways, DiagnosticSink& sink) {
+    const ClipOptions options{.mesh = request.mesh,
+                              .reuse = true,
+                              .block = found.lattice.block,
+                              .pieces = request.pieces,
+                              .added = found.added,
+                              .fused = request.fused,
+                              .ways = ways};
     return clipped_lattice_body(cell, last, found.body, options, context.run, sink);
   };
+  const auto poles_aside = with_poles_aside(found.cell);
   DiagnosticSink first, second;
-  auto made = attempt(found.cell, first);
+  auto made = attempt(found.cell, poles_aside ? Ways::first : Ways::all, first);
+  const bool is_given_up = made && made->is_given_up;
   bool is_second = false;
-  if (!made && !context.run.should_stop())
-    if (const auto cell = with_poles_aside(found.cell)) {
-      made = attempt(*cell, second);
-      is_second = made.has_value();
-    }
+  if ((!made || is_given_up) && poles_aside && !context.run.should_stop()) {
+    made = attempt(*poles_aside, Ways::all, second);
+    is_second = made.has_value();
+    if (!made && is_given_up && !context.run.should_stop()) made = attempt(found.cell, Ways::all, first);
+  }
   for (const Diagnostic& d : (is_second ? second : first).diagnostics()) context.sink.report(d);
   return made;
 }

@@ -51,7 +51,8 @@ int CellClipper::side_of(Vec3 p) {
   return side;
 }
 
-ClippedCell CellClipper::clip(std::uint32_t kind, const Index3& cell, const std::vector<std::uint32_t>& faces) {
+ClippedCell CellClipper::clip(std::uint32_t kind, const Index3& cell, const std::vector<std::uint32_t>& faces,
+                              Ways ways) {
   const double a = grid_.tolerance;  // a millionth of the cell
   const std::array<Attempt, 9> ladder{{{},
                                        {.patches = false, .all_faces = true},
@@ -67,7 +68,8 @@ ClippedCell CellClipper::clip(std::uint32_t kind, const Index3& cell, const std:
   std::optional<ClippedCell> best;  // of those with rough edges
   const Vec3 size = grid_.size();
   const double rough = rough_edge * std::fmin(size.x, std::fmin(size.y, size.z));
-  for (std::size_t n = 0; n < ladder.size() && !run_.should_stop(); ++n) {
+  const std::size_t last = ways == Ways::all ? ladder.size() : 2;
+  for (std::size_t n = 0; n < last && !run_.should_stop(); ++n) {
     try {
       WholeCell& all = whole(kind, ladder[n].variant);
       if (all.faces.empty() && ladder[n].variant > 0) continue;

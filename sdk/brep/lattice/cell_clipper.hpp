@@ -39,8 +39,11 @@ class CellClipper {
   CellClipper(std::function<WholeCell(std::uint32_t, int)> frame, const BodySurface& surface, const CellGrid& grid,
               const RunOptions& run);
 
+  /// Of the ways to make a cell: those before anything is moved or looked at again, or all.
+  enum class Ways : std::uint8_t { first, all };
   /// Box `cell`, of that kind, and the numbers of the faces that touch it.
-  [[nodiscard]] ClippedCell clip(std::uint32_t kind, const Index3& cell, const std::vector<std::uint32_t>& faces);
+  [[nodiscard]] ClippedCell clip(std::uint32_t kind, const Index3& cell, const std::vector<std::uint32_t>& faces,
+                                 Ways ways = Ways::all);
 
  private:
   struct Attempt {

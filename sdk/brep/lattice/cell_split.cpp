@@ -2,6 +2,7 @@
 #include "lattice/cell_split.hpp"
 
 #include <BOPTools_AlgoTools3D.hxx>
+#include <GCPnts_AbscissaPoint.hxx>
 #include <map>
 #include <optional>
 
@@ -40,6 +41,18 @@ double extent_of(const TopoDS_Face& face) {
   return norm(box.max - box.min);
 }
 
+/// What a face's area may be off, given how well its edges are known.
+double doubt_of(const TopoDS_Face& face) {
+  double doubt = 0;
+  for (TopExp_Explorer it(face, TopAbs_EDGE); it.More(); it.Next()) {
+    const TopoDS_Edge& edge = TopoDS::Edge(it.Current());
+    if (BRep_Tool::Degenerated(edge)) continue;
+    const BRepAdaptor_Curve curve(edge);
+    doubt += BRep_Tool::Tolerance(edge) * GCPnts_AbscissaPoint::Length(curve);
+  }
+  return doubt;
+}
+
 class CellSplit {
  public:
   CellSplit(WholeCell& cell, const LocalBody& body, const SplitOptions& options)
@@ -61,6 +74,7 @@ class CellSplit {
   void join_sets();
   const char* place_cell_pieces();
   const char* place_caps();
+  [[nodiscard]] int side_of_cell(Vec3 p);
   const char* check_sums();
   void take();
   [[nodiscard]] bool is_changed() const;
@@ -144,13 +158,23 @@ struct Farthest {
   double clear_from = 0;
   Vec3 point{};
   double distance = -1;
-  std::vector<Vec3> clear{};
+  std::vector<Vec3> clear{}, all{};
   void look_at(Vec3 p, const std::vector<Triangle3>& triangles) {
     const double d = distance_to(triangles, p);
+    all.push_back(p);
     if (d > clear_from) clear.push_back(p);
     if (d <= distance) return;
     point = p;
     distance = d;
+  }
+  /// What `side` says of the first point of which it can say anything: where surfaces touch, it may be on both. 0: of
+  /// none.
+  template <typename Side>
+  [[nodiscard]] int side_by(Side side) const {
+    if (const int known = side(point); known != 0) return known;
+    for (std::size_t i = 0; i < all.size(); i += 1 + all.size() / witnesses)
+      if (const int known = side(all[i]); known != 0) return known;
+    return 0;
   }
   /// True where one of those that are clear is on the other side.
   template <typename Contains>
@@ -179,7 +203,7 @@ const char* CellSplit::place_cell_pieces() {
           if (const auto middle = middle_of(faces_.pieces[p])) best.look_at(*middle, body_.triangles);
       if (best.distance < 0) return "a piece of a cell is too thin to be placed";
       if (best.distance <= margin) {
-        side = body_.side(best.point);
+        side = best.side_by(body_.side);
         if (side == 0) return "a piece of a cell is too thin to be placed";
       } else {
         side = body_.contains(best.point) ? 1 : -1;
@@ -190,6 +214,17 @@ const char* CellSplit::place_cell_pieces() {
     for (const std::uint32_t p : set) kept_[p] = side > 0;
   }
   return nullptr;
+}
+
+/// +1: inside; 0: too close to say.
+int CellSplit::side_of_cell(Vec3 p) {
+  int side = -1;
+  for (BRepClass3d_SolidClassifier& solid : cell_.solids) {
+    solid.Perform(to_pnt(p), Precision::Confusion());
+    if (solid.State() == TopAbs_ON) return 0;
+    if (solid.State() == TopAbs_IN) side = 1;
+  }
+  return side;
 }
 
 const char* CellSplit::place_caps() {
@@ -232,11 +267,9 @@ const char* CellSplit::place_caps() {
     if (best.distance < 0) return "a face of the body in a cell is too thin to be placed";
     bool in = false;
     if (best.distance <= margin) {
-      for (BRepClass3d_SolidClassifier& solid : cell_.solids) {
-        solid.Perform(to_pnt(best.point), Precision::Confusion());
-        if (solid.State() == TopAbs_ON) return "a face of the body in a cell is too thin to be placed";
-        in = in || solid.State() == TopAbs_IN;
-      }
+      const int side = best.side_by([&](Vec3 p) { return side_of_cell(p); });
+      if (side == 0) return "a face of the body in a cell is too thin to be placed";
+      in = side > 0;
     } else {
       in = cell_.probe.contains(best.point);
     }
@@ -269,7 +302,10 @@ const char* CellSplit::check_sums() {
   for (const auto& [p, reversed] : taken_) {
     const bool whole = is_whole(p);
     area += (reversed ? -1.0 : 1.0) * (whole ? cell_.faces[faces_.pieces[p].of].area : moments(p).vector_area);
-    if (!whole && moments(p).area <= 2 * tiny * options_.size * extent_of(faces_.pieces[p].face))
+    if (whole) continue;
+    // Where a cusp between two circles is cut off near its end, what is left is narrow, and well known.
+    const TopoDS_Face& face = faces_.pieces[p].face;
+    if (moments(p).area <= 2 * tiny * options_.size * extent_of(face) && moments(p).area <= 2 * doubt_of(face))
       return "a piece of a face has no width";
   }
   if (norm(area) > open_area * options_.size * options_.size) return "the faces of a piece of a cell do not close";

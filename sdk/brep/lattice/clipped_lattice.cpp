@@ -106,13 +106,13 @@ class ClipPlan {
 /// All tasks, by as many threads as the run allows; which thread does which does not show in the results.
 void clip_all(std::vector<ClipTask>& tasks, const std::vector<TopoDS_Shape>& solids,
               const CellClipper::Otherwise& otherwise, const BodySurface& surface, const CellGrid& grid,
-              const RunOptions& run) {
+              CellClipper::Ways ways, const RunOptions& run) {
   std::deque<CellClipper> clippers;  // they cannot be moved
   for (std::size_t i = 0; i < workers_for(tasks.size(), run); ++i)
     clippers.emplace_back(solids, otherwise, surface, grid, run);
   (void)in_parallel(tasks.size(), run, [&](std::size_t worker, std::size_t i) {
     ClipTask& task = tasks[i];
-    task.result = clippers[worker].clip(task.kind, task.cell, surface.faces(task.cell));
+    task.result = clippers[worker].clip(task.kind, task.cell, surface.faces(task.cell), ways);
     return task.result.fault.empty();
   });
 }
@@ -182,7 +182,10 @@ class LatticeMaker {
     if (budget.is_exceeded()) return too_many_booleans();
     if (!solids) return {};
     solids_ = std::move(*solids);
-    if (std::string amiss = clip(cells, kinds); !amiss.empty()) return fault(std::move(amiss));
+    if (std::string amiss = clip(cells, kinds); !amiss.empty()) {
+      if (options_.ways != CellClipper::Ways::all) return ClippedLattice{.is_given_up = true};
+      return fault(std::move(amiss));
+    }
     if (run_.should_stop()) return stopped();
     if (out_.kept == 0) return std::move(out_);
     try {
@@ -257,7 +260,7 @@ std::string LatticeMaker::clip(const KeptCells& cells, CellKinds& kinds) {
     const auto otherwise = [&](std::uint32_t kind, int variant) {
       return solid_in_box_otherwise(cell_, reach(), kinds.parts()[kind], variant);
     };
-    clip_all(plan.tasks, solids_, otherwise, *surface_, grid_, run_);
+    clip_all(plan.tasks, solids_, otherwise, *surface_, grid_, options_.ways, run_);
     if (run_.should_stop()) return {};
     std::vector<std::uint32_t> kind_of_task;
     for (ClipTask& task : plan.tasks) {

@@ -6,6 +6,7 @@
 // Cells that see the same piece of a body are clipped, or united with it, once, in parallel; the results are further
 // kinds of box, and everything after that is as for whole boxes.
 
+#include "lattice/cell_clipper.hpp"
 #include "lattice/lattice_pieces.hpp"
 #include "lattice/shape_lattice.hpp"
 #include "meso/base/run_options.hpp"
@@ -18,6 +19,7 @@ struct ClippedLattice {
   std::uint64_t kept = 0;                            ///< cells of which something is left
   std::uint64_t crossing = 0;                        ///< of these, cut by the boundary
   ClipCounts clip;                                   ///< booleans they took
+  bool is_given_up = false;                          ///< there is nothing: the first ways were not enough
   std::shared_ptr<const LatticePieces> cut, joined;  ///< before and after bodies are added, where they are asked for
 };
 
@@ -36,6 +38,7 @@ struct ClipOptions {
   PiecesAsked pieces = PiecesAsked::none;
   std::vector<TopoDS_Shape> added{};  ///< solids that are united with what is left, as `body` is given
   FusedLimit fused{};
+  CellClipper::Ways ways = CellClipper::Ways::all;  ///< to cut a cell by `body`
 };
 
 /// Body n regularised union of the cells (0, 0, 0) ... `last`. `body`: outward solids in the frame of the cell whose

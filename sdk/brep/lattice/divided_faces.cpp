@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lattice/divided_faces.hpp"
 
-#include <BOPAlgo_PaveFiller.hxx>
 #include <BOPTools_AlgoTools.hxx>
 #include <algorithm>
 
+#include "lattice/crossing_filler.hpp"
 #include "lattice/section_curves.hpp"
 #include "stop_watch.hpp"
 
@@ -72,6 +72,7 @@ class FaceDivision {
   void take_pieces(BOPAlgo_Builder& builder, const std::vector<TopoDS_Face>& own, const std::vector<bool>& near,
                    const std::vector<TopoDS_Face>& tools);
   void read_edges();
+  [[nodiscard]] bool is_contact(std::uint32_t piece, const TopoDS_Edge& edge);
   void fit();
 
   const WholeCell& cell_;
@@ -111,7 +112,7 @@ bool FaceDivision::intersect(const RunOptions& run) {
     return true;
   }
   const Handle(StopWatch) watch = new StopWatch(run);
-  BOPAlgo_PaveFiller filler;
+  CrossingFiller filler;
   filler.SetArguments(arguments);
   filler.SetFuzzyValue(options_.fuzzy);
   filler.Perform(watch->Start());
@@ -147,12 +148,13 @@ void FaceDivision::take_pieces(BOPAlgo_Builder& builder, const std::vector<TopoD
 }
 
 void FaceDivision::read_edges() {
+  std::vector<std::pair<std::uint32_t, TopoDS_Edge>> within;
   for (std::uint32_t p = 0; p < out_.pieces.size(); ++p)
     for (TopExp_Explorer it(out_.pieces[p].face, TopAbs_EDGE); it.More(); it.Next()) {
       const TopoDS_Edge& edge = TopoDS::Edge(it.Current());
       if (BRep_Tool::Degenerated(edge)) continue;
       if (edge.Orientation() == TopAbs_INTERNAL) {
-        out_.loose = true;
+        within.emplace_back(p, edge);
         continue;
       }
       const auto index = static_cast<std::size_t>(out_.edges.Add(edge)) - 1;
@@ -165,6 +167,23 @@ void FaceDivision::read_edges() {
       (p < out_.of_cell ? out_.by_cell : out_.by_body)[index] = true;
       if (out_.pieces[p].coincident != 0) out_.by_body[index] = true;
     }
+  for (const auto& [p, edge] : within) {
+    out_.loose = out_.loose || !is_contact(p, edge);
+    if (out_.loose) return;
+    BRepTools::RemoveInternals(out_.pieces[p].face, Standard_True);
+  }
+}
+
+/// An old edge that lies in the piece because a face beside it touches the piece there.
+bool FaceDivision::is_contact(std::uint32_t piece, const TopoDS_Edge& edge) {
+  const int index = out_.edges.FindIndex(edge);
+  if (index == 0) return false;
+  double from = 0, to = 0;
+  const Handle(Geom_Curve) curve = BRep_Tool::Curve(edge, from, to);
+  return std::ranges::any_of(out_.uses[static_cast<std::size_t>(index) - 1], [&](const PieceUse& use) {
+    return (use.piece < out_.of_cell) != (piece < out_.of_cell) &&
+           touch_along(out_.pieces[use.piece].face, out_.pieces[piece].face, {curve, from, to}, out_.context);
+  });
 }
 
 /// Sections lie in one face of the cell and in one of the body; what else there is are pieces of old edges.

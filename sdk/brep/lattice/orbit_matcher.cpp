@@ -54,7 +54,19 @@ OnEdge on_edge(const TopoDS_Edge& edge, Vec3 p, Vec3 along, double tolerance) {
 
 }  // namespace
 
-OrbitMatcher::VertexMatch OrbitMatcher::match_vertex(Vec3 p) {
+void OrbitMatcher::begin_solid() {
+  of_solid_.Clear();
+  matches_.clear();
+  corners_.clear();
+}
+
+OrbitMatcher::VertexMatch OrbitMatcher::match_vertex(const TopoDS_Vertex& vertex) {
+  const auto index = static_cast<std::size_t>(of_solid_.Add(vertex)) - 1;
+  if (index == matches_.size()) matches_.push_back(find_or_add(to_vec(BRep_Tool::Pnt(vertex))));
+  return matches_[index];
+}
+
+OrbitMatcher::VertexMatch OrbitMatcher::find_or_add(Vec3 p) {
   VertexMatch found;
   for (std::size_t i = 0; i < 3; ++i) {
     const double size = geometry_.lattice(i, i);
@@ -63,28 +75,37 @@ OrbitMatcher::VertexMatch OrbitMatcher::match_vertex(Vec3 p) {
   const Vec3 home = p - cell_origin(geometry_, found.offset);
   const std::array<std::int64_t, 3> at = small_box(home, tolerance_);
   std::optional<std::uint32_t> known;
+  double least = tolerance_;
+  const auto is_another = [&](std::uint32_t v) {
+    const auto corner = corners_.find({v, found.offset});
+    return corner != corners_.end() && norm(corner->second - p) > tolerance_ / 100;
+  };
   for (std::int64_t x = at[0] - 1; x <= at[0] + 1; ++x)
     for (std::int64_t y = at[1] - 1; y <= at[1] + 1; ++y)
       for (std::int64_t z = at[2] - 1; z <= at[2] + 1; ++z) {
         const auto near = vertices_.find(hash_of({x, y, z}));
         if (near == vertices_.end()) continue;
         for (const std::uint32_t v : near->second)
-          if (norm(geometry_.vertices[v] - home) <= tolerance_) known = std::min(v, known.value_or(v));
+          if (const double away = norm(geometry_.vertices[v] - home); away <= least && !is_another(v)) {
+            known = v;
+            least = away;
+          }
       }
   if (known) {
     found.vertex = *known;
-    return found;
+  } else {
+    found.vertex = static_cast<std::uint32_t>(geometry_.vertices.size());
+    geometry_.vertices.push_back(home);
+    vertices_[hash_of(at)].push_back(found.vertex);
   }
-  found.vertex = static_cast<std::uint32_t>(geometry_.vertices.size());
-  geometry_.vertices.push_back(home);
-  vertices_[hash_of(at)].push_back(found.vertex);
+  corners_.emplace(std::pair(found.vertex, found.offset), p);
   return found;
 }
 
 OrbitMatcher::Match OrbitMatcher::match(const TopoDS_Edge& oriented) {
   const TopoDS_Edge edge = TopoDS::Edge(oriented.Oriented(TopAbs_FORWARD));
-  const VertexMatch start = match_vertex(to_vec(BRep_Tool::Pnt(TopExp::FirstVertex(edge))));
-  const VertexMatch end = match_vertex(to_vec(BRep_Tool::Pnt(TopExp::LastVertex(edge))));
+  const VertexMatch start = match_vertex(TopExp::FirstVertex(edge));
+  const VertexMatch end = match_vertex(TopExp::LastVertex(edge));
   const std::vector<Vec3> points = points_along(edge);
   const Vec3 middle = points[sample_count / 2];
   const Vec3 along = points[sample_count / 2 + 1] - points[sample_count / 2 - 1];
@@ -118,7 +139,7 @@ OrbitMatcher::Match OrbitMatcher::match(const TopoDS_Edge& oriented) {
 }
 
 OrbitMatcher::Match OrbitMatcher::add_degenerate(const TopoDS_Edge& edge) {
-  const VertexMatch pole = match_vertex(to_vec(BRep_Tool::Pnt(TopExp::FirstVertex(edge))));
+  const VertexMatch pole = match_vertex(TopExp::FirstVertex(edge));
   const auto fresh = static_cast<std::uint32_t>(geometry_.edges.size());
   geometry_.edges.push_back({.curve = Line{},
                              .vertex = {pole.vertex, pole.vertex},

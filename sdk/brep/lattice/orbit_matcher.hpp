@@ -18,6 +18,9 @@ class OrbitMatcher {
   OrbitMatcher(Template& geometry, std::vector<std::vector<Vec3>>& samples, Vec3 origin, double tolerance)
       : geometry_(geometry), samples_(samples), origin_(origin), tolerance_(tolerance) {}
 
+  /// What comes now is of another solid. Corners of one solid are told apart down to a hundredth of the tolerance.
+  void begin_solid();
+
   struct Match {
     std::uint32_t edge = 0;
     Index3 offset{};       ///< the template's edge, moved by this, is the given one
@@ -34,13 +37,17 @@ class OrbitMatcher {
     Index3 offset{};
     friend bool operator==(const VertexMatch&, const VertexMatch&) = default;
   };
-  [[nodiscard]] VertexMatch match_vertex(Vec3 p);
+  [[nodiscard]] VertexMatch match_vertex(const TopoDS_Vertex& vertex);
+  [[nodiscard]] VertexMatch find_or_add(Vec3 p);
 
   Template& geometry_;
   std::vector<std::vector<Vec3>>& samples_;
   Vec3 origin_;
   double tolerance_;
   std::unordered_map<std::uint64_t, std::vector<std::uint32_t>> vertices_;  ///< by the small box they are in
+  TopTools_IndexedMapOfShape of_solid_;
+  std::vector<VertexMatch> matches_;                          ///< of those
+  std::map<std::pair<std::uint32_t, Index3>, Vec3> corners_;  ///< which of the solid's corners is that vertex
   std::map<std::pair<std::uint32_t, std::uint32_t>, std::vector<std::uint32_t>> edges_;  ///< by their two vertices
   std::vector<TopoDS_Edge> shapes_;                                                      ///< first edge of each orbit
 };

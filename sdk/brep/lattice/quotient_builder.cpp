@@ -93,6 +93,7 @@ bool Builder::add_kind(const TopoDS_Shape& solid) {
   CellKind& kind = quotient_.kinds.emplace_back();
   Source& source = sources_.emplace_back();
   source.shell = all_faces(solid);
+  matcher_.begin_solid();
   for (TopExp_Explorer lump(solid, TopAbs_SOLID); lump.More(); lump.Next(), ++kind.lumps)
     for (TopExp_Explorer it(lump.Current(), TopAbs_FACE); it.More(); it.Next()) source.face_lumps.push_back(kind.lumps);
   TopExp::MapShapes(source.shell, TopAbs_EDGE, source.edges);

@@ -221,8 +221,10 @@ std::optional<Triangulation> own_mesh(const TopoDS_Face& face, const TemplateEdg
     const EdgeTemplate& orbit = geometry.edges[match.edge];
     const auto& [nodes, reversed] =
         borders.emplace_back(std::vector<std::uint32_t>{}, edge.Orientation() == TopAbs_REVERSED);
-    for (int k = 1; k <= polygon->NbNodes(); ++k)
+    for (int k = 1; k <= polygon->NbNodes(); ++k) {
+      if (polygon->Node(k) < 1) return {};  // the mesher has left the point out
       borders.back().first.push_back(static_cast<std::uint32_t>(polygon->Node(k) - 1));
+    }
     const auto end = [&](std::size_t k) {
       return MeshPoint{geometry.vertices[orbit.vertex[k]], match.offset + orbit.vertex_offset[k]};
     };

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+// Automatic balls cut by bodies where surfaces only touch: round faces and planes between boxes, or a cut close to a
+// point in which two struts touch on their ball.
+#include <cmath>
+#include <numbers>
+
+#include "realise_fixture.hpp"
+
+namespace meso::brep {
+namespace {
+
+using RealiseTouching = RealiseTest;
+
+/// 2 x 1 x 1 body-centred cells of 4 mm.
+std::string two_cells(const std::string& set) {
+  std::string nodes, beams;
+  for (int i = 0; i < 8; ++i) {
+    const auto at = [&](int bit) { return std::string(i & bit ? "4" : "0"); };
+    const std::string name = "n" + std::to_string(i);
+    nodes += "<node id=\"" + name + "\" x=\"" + at(1) + "\" y=\"" + at(2) + "\" z=\"" + at(4) + "\"/>";
+    beams += "<beam from=\"c\" to=\"" + name + "\"/>";
+  }
+  return R"(<unitCells><unitCell id="u"><parameter id="r" value="0.3"/><box dx="4" dy="4" dz="4"/><beams radius="r" nodeRadius="auto"><node id="c" x="2" y="2" z="2"/>)" +
+         nodes + beams +
+         R"(</beams></unitCell></unitCells><patterns><pattern id="c" unitCell="u"><loop index="i" axis="x" count="2" spacing="4"/>
+    <loop index="j" axis="y" count="1" spacing="4"/><loop index="k" axis="z" count="1" spacing="4"/>)" +
+         set + "</pattern></patterns>" + part(R"(<apply pattern="c" operation="intersection"/>)", true);
+}
+const std::string block = R"(<box dx="8" dy="4" dz="4"/>)",
+                  round = R"(<cylinder x1="0" y1="4" z1="-1" x2="0" y2="4" z2="5" radius="4"/>)";
+const std::string graded = R"(<set parameter="r" value="0.3 + 0.02*global.x" at="node"/>)",
+                  alike = R"(<set parameter="r" value="0.3" at="node"/>)";
+
+// The cylinder touches the plane between the boxes and one in which they end.
+TEST_F(RealiseTouching, APlaneBetweenBoxesThatARoundFaceTouches) {
+  const auto whole = realised(macrostructure(block) + two_cells(graded));
+  const auto outside = realised(macrostructure("<difference>" + block + round + "</difference>") + two_cells(graded));
+  const auto inside =
+      realised(macrostructure("<intersection>" + block + round + "</intersection>") + two_cells(graded));
+  ASSERT_TRUE(whole && outside && inside);
+  EXPECT_EQ(outside->way, "lattice");
+  EXPECT_EQ(inside->way, "lattice");
+  EXPECT_TRUE(audit(outside->body).clean() && audit(inside->body).clean());
+  EXPECT_NEAR((measure(outside->body).volume + measure(inside->body).volume) / measure(whole->body).volume, 1, 1e-7);
+}
+
+// Of the cusp between two circles that touch, the plane leaves a tip that is thinner than a hundred-thousandth of the
+// cell.
+TEST_F(RealiseTouching, ACutCloseToAPointOfContact) {
+  const double touch = 2 + 0.3 / std::sin(std::acos(1.0 / 3) / 2) / std::numbers::sqrt2;
+  const auto slab = [](double z) {
+    return macrostructure("<box x=\"-5\" y=\"-5\" z=\"" + std::to_string(z) + "\" dx=\"20\" dy=\"20\" dz=\"20\"/>");
+  };
+  const auto whole = realised(slab(-5) + two_cells(alike));
+  ASSERT_TRUE(whole);
+  const auto below = realised(slab(touch + 0.001 - 20) + two_cells(alike));
+  const auto above = realised(slab(touch + 0.001) + two_cells(alike));
+  ASSERT_TRUE(below && above);
+  EXPECT_EQ(below->way, "lattice");
+  EXPECT_TRUE(audit(below->body).clean() && audit(above->body).clean());
+  EXPECT_NEAR((measure(below->body).volume + measure(above->body).volume) / measure(whole->body).volume, 1, 1e-7);
+}
+
+}  // namespace
+}  // namespace meso::brep
