@@ -2,6 +2,8 @@
 #include "lattice/crossing_filler.hpp"
 
 #include <BOPDS_DS.hxx>
+#include <BOPDS_Iterator.hxx>
+#include <BOPDS_Tools.hxx>
 #include <GeomAPI_ProjectPointOnSurf.hxx>
 
 namespace meso::brep {
@@ -25,6 +27,29 @@ Vec3 normal_at(const TopoDS_Face& face, const gp_Pnt& p, const Handle(IntTools_C
   return area > 0 ? across / area : Vec3{};
 }
 
+class NearPairs : public BOPDS_Iterator {
+ public:
+  NearPairs(const Handle(NCollection_BaseAllocator) & memory, const TopTools_MapOfShape& away)
+      : BOPDS_Iterator(memory), away_(away) {}
+
+ protected:
+  void Intersect(const Handle(IntTools_Context) & context, Standard_Boolean oriented_boxes,
+                 Standard_Real fuzzy) override {
+    BOPDS_Iterator::Intersect(context, oriented_boxes, fuzzy);
+    BOPDS_VectorOfPair& pairs = myLists(BOPDS_Tools::TypeToInteger(TopAbs_EDGE, TopAbs_FACE));
+    BOPDS_VectorOfPair near;
+    for (const BOPDS_Pair& pair : pairs) {
+      Standard_Integer a = 0, b = 0;
+      pair.Indices(a, b);
+      if (!away_.Contains(myDS->Shape(a)) && !away_.Contains(myDS->Shape(b))) near.Append(pair);
+    }
+    pairs = near;
+  }
+
+ private:
+  const TopTools_MapOfShape& away_;
+};
+
 }  // namespace
 
 bool touch_along(const TopoDS_Face& a, const TopoDS_Face& b, const CurveSpan& span,
@@ -35,6 +60,16 @@ bool touch_along(const TopoDS_Face& a, const TopoDS_Face& b, const CurveSpan& sp
     if (norm(n) == 0 || norm(m) == 0 || norm(cross(n, m)) > parallel) return false;
   }
   return true;
+}
+
+void CrossingFiller::Init(const Message_ProgressRange& range) {
+  BOPAlgo_PaveFiller::Init(range);
+  if (HasErrors() || away_.IsEmpty()) return;
+  delete myIterator;
+  myIterator = new NearPairs(myAllocator, away_);
+  myIterator->SetRunParallel(myRunParallel);
+  myIterator->SetDS(myDS);
+  myIterator->Prepare(myContext, myUseOBB, myFuzzyValue);
 }
 
 void CrossingFiller::PerformFF(const Message_ProgressRange& range) {

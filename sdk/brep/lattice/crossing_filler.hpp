@@ -8,6 +8,7 @@
 
 #include <BOPAlgo_PaveFiller.hxx>
 #include <IntTools_Context.hxx>
+#include <TopTools_MapOfShape.hxx>
 
 #include "occt.hpp"
 
@@ -23,8 +24,17 @@ struct CurveSpan {
                                const Handle(IntTools_Context) & context);
 
 class CrossingFiller : public BOPAlgo_PaveFiller {
+ public:
+  /// Edges that meet no face of another argument. OpenCASCADE intersects each edge with each face whose box it meets,
+  /// and a face across a cell has a box as large as the cell; with a B-spline surface each takes a millisecond.
+  void leave_out(const TopTools_MapOfShape& edges) { away_ = edges; }
+
  protected:
+  void Init(const Message_ProgressRange& range) override;
   void PerformFF(const Message_ProgressRange& range) override;
+
+ private:
+  TopTools_MapOfShape away_;
 };
 
 }  // namespace meso::brep

@@ -29,6 +29,52 @@ bool meet(const Box3& a, const Box3& b) {
   return true;
 }
 
+/// Edges of faces of the cell that are farther than `by` from all triangles of the body.
+class EdgesAway {
+ public:
+  EdgesAway(const std::vector<Triangle3>& triangles, double by) : triangles_(triangles), by_(by) {
+    for (const Triangle3& triangle : triangles) boxes_.push_back(box_of(triangle, 0));
+  }
+
+  void add_those_of(const TopoDS_Face& face) {
+    for (TopExp_Explorer it(face, TopAbs_EDGE); it.More(); it.Next()) {
+      const TopoDS_Edge& edge = TopoDS::Edge(it.Current());
+      if (!BRep_Tool::Degenerated(edge) && !may_meet(edge)) edges_.Add(edge);
+    }
+  }
+  [[nodiscard]] const TopTools_MapOfShape& edges() const { return edges_; }
+
+ private:
+  [[nodiscard]] bool may_meet(const TopoDS_Edge& edge) const {
+    const BRepAdaptor_Curve curve(edge);
+    const bool is_line = curve.GetType() == GeomAbs_Line;
+    constexpr int spans = 16;
+    const auto at = [&](int i) {
+      const double share = static_cast<double>(i) / spans;
+      return to_vec(curve.Value((1 - share) * curve.FirstParameter() + share * curve.LastParameter()));
+    };
+    Vec3 from = at(0);
+    for (int i = 1; i <= spans; ++i) {
+      const Vec3 to = at(i);
+      // Between two of 17 points of a turn, a circle is a tenth of their distance off the line.
+      const double by = by_ + (is_line ? 0 : norm(to - from) / 4);
+      Box3 box;
+      box.extend(from);
+      box.extend(to);
+      box = {box.min - Vec3{by, by, by}, box.max + Vec3{by, by, by}};
+      for (std::size_t t = 0; t < triangles_.size(); ++t)
+        if (meet(box, boxes_[t]) && overlaps(triangles_[t], box)) return true;
+      from = to;
+    }
+    return false;
+  }
+
+  const std::vector<Triangle3>& triangles_;
+  std::vector<Box3> boxes_;
+  double by_;
+  TopTools_MapOfShape edges_;
+};
+
 /// Faces of the cell and of the body that may touch one of the other, given how far triangles can be off.
 struct NearFaces {
   std::vector<bool> of_cell, of_body;
@@ -87,7 +133,8 @@ bool FaceDivision::intersect(const RunOptions& run) {
   for (const WholeCell::Face& face : cell_.faces) originals.push_back(face.face);
   const std::vector<TopoDS_Face> own =
       faces_in(BRepBuilderAPI_Copy(compound_of(originals), Standard_False, Standard_False).Shape());
-  NearFaces near = near_faces(cell_, body_, cell_.reach + body_.reach + tiny * options_.size);
+  const double reach = cell_.reach + body_.reach + tiny * options_.size;
+  NearFaces near = near_faces(cell_, body_, reach);
   if (options_.all_faces) {
     near.of_cell.assign(near.of_cell.size(), true);
     near.of_body.assign(near.of_body.size(), true);
@@ -115,6 +162,11 @@ bool FaceDivision::intersect(const RunOptions& run) {
   CrossingFiller filler;
   filler.SetArguments(arguments);
   filler.SetFuzzyValue(options_.fuzzy);
+  if (!options_.all_faces) {
+    EdgesAway away(body_.triangles, reach + options_.fuzzy);
+    for (const TopoDS_Face& face : near_own) away.add_those_of(face);
+    filler.leave_out(away.edges());
+  }
   filler.Perform(watch->Start());
   if (filler.HasErrors()) return false;
   for (const TopoDS_Shape& argument : arguments) builder.AddArgument(argument);
