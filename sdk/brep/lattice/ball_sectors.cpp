@@ -131,7 +131,8 @@ void BallSectors::cut(Ball& ball) {
   }
   std::vector<bool> is_on_border;
   for (const Cap& cap : ball.caps) is_on_border.push_back(cap.side || box_.places[*cap.strut / 2] == Place::in_sides);
-  for (const auto& [a, b] : sector_cuts(caps, is_on_border)) cut_between(ball, caps[a], caps[b]);
+  const Border border = std::ranges::count(is_on_border, true) == 1 ? Border::linked : Border::as_it_is;
+  for (const auto& [a, b] : sector_cuts(caps, is_on_border, border)) cut_between(ball, caps[a], caps[b]);
 }
 
 /// One line along each strut that is free in the box, as far from all corners of its two circles as may be.

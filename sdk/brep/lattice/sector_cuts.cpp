@@ -24,10 +24,9 @@ Vec3 towards(Vec3 axis, Vec3 other, double angle) {
 class SectorDivision {
  public:
   SectorDivision(const std::vector<BallCap>& caps, const std::vector<bool>& is_on_border) : caps_(caps) {
-    std::optional<std::uint32_t> border;
     for (std::uint32_t c = 0; c < caps.size(); ++c) {
-      set_of_.push_back(is_on_border[c] && border ? *border : c);
-      if (is_on_border[c] && !border) border = c;
+      set_of_.push_back(is_on_border[c] && border_ ? *border_ : c);
+      if (is_on_border[c] && !border_) border_ = c;
     }
     for (std::uint32_t b = 0; b < caps.size(); ++b)
       for (std::uint32_t a = 0; a < b; ++a)
@@ -35,16 +34,15 @@ class SectorDivision {
     std::ranges::stable_sort(candidates_, {}, &Link::gap);
   }
 
-  std::vector<BallCuts::Cut> cuts() {
+  std::vector<BallCuts::Cut> cuts(Border border) {
     for (const Link& link : candidates_)
       if (link.gap <= near_gap && !crosses(link)) links_.push_back(link);
-    while (const auto bridge = find_bridge()) {
-      const auto around = std::ranges::find_if(
-          candidates_, [&](const Link& link) { return !has(link) && leads_around(*bridge, link) && !crosses(link); });
-      if (around != candidates_.end())
-        links_.push_back(*around);
-      else
-        links_[*bridge].is_given_up = true;
+    close_rings();
+    if (border == Border::linked && !is_border_linked()) {
+      const auto nearest =
+          std::ranges::find_if(candidates_, [&](const Link& link) { return is_of_border(link) && !crosses(link); });
+      if (nearest != candidates_.end()) links_.push_back(*nearest);
+      close_rings();
     }
     std::vector<BallCuts::Cut> out;
     for (const Link& link : links_)
@@ -58,6 +56,23 @@ class SectorDivision {
     double gap = 0;  ///< none: a contact
     bool is_given_up = false;
   };
+
+  void close_rings() {
+    while (const auto bridge = find_bridge()) {
+      const auto around = std::ranges::find_if(
+          candidates_, [&](const Link& link) { return !has(link) && leads_around(*bridge, link) && !crosses(link); });
+      if (around != candidates_.end())
+        links_.push_back(*around);
+      else
+        links_[*bridge].is_given_up = true;
+    }
+  }
+  [[nodiscard]] bool is_of_border(const Link& link) const {
+    return border_ && (set_of_[link.caps[0]] == *border_ || set_of_[link.caps[1]] == *border_);
+  }
+  [[nodiscard]] bool is_border_linked() const {
+    return std::ranges::any_of(links_, [&](const Link& link) { return is_of_border(link) && !link.is_given_up; });
+  }
 
   void look_at(std::uint32_t a, std::uint32_t b) {
     const double gap = angle_between(caps_[a].axis, caps_[b].axis) - caps_[a].angle - caps_[b].angle;
@@ -120,14 +135,16 @@ class SectorDivision {
   }
 
   const std::vector<BallCap>& caps_;
+  std::optional<std::uint32_t> border_;
   std::vector<std::uint32_t> set_of_;  ///< by cap
   std::vector<Link> links_, candidates_;
 };
 
 }  // namespace
 
-std::vector<BallCuts::Cut> sector_cuts(const std::vector<BallCap>& caps, const std::vector<bool>& is_on_border) {
-  return SectorDivision(caps, is_on_border).cuts();
+std::vector<BallCuts::Cut> sector_cuts(const std::vector<BallCap>& caps, const std::vector<bool>& is_on_border,
+                                       Border border) {
+  return SectorDivision(caps, is_on_border).cuts(border);
 }
 
 }  // namespace meso::brep

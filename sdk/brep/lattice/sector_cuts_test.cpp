@@ -40,6 +40,13 @@ TEST(SectorCuts, ACutOrContactHasAnotherToCloseTheRing) {
   }
 }
 
+// Half a ball has no axis that keeps off it: two struts and the side are linked all around.
+TEST(SectorCuts, HalfABallIsDivided) {
+  const std::vector<BallCap> caps{{{0, 0, -1}, pi / 2}, {unit({1, 0, 1}), 0.5}, {unit({-1, 0, 1}), 0.5}};
+  EXPECT_TRUE(sector_cuts(caps, {true, false, false}).empty());
+  EXPECT_EQ(sector_cuts(caps, {true, false, false}, Border::linked).size(), 3u);
+}
+
 // Two circles between which a third is cannot be linked past it.
 TEST(SectorCuts, WhereThereIsNoRingNothingIsCut) {
   const std::vector<BallCap> caps{{{0, 0, -1}, pi / 2}, {{0, 0, 1}, 0.3}, {unit({0.62, 0, 1}), 0.25}};
