@@ -73,6 +73,45 @@ TEST_P(LibraryCells, BlockIsOneTemplateOfTheRightVolume) {
   EXPECT_EQ(made->cells.kept, 8u);
 }
 
+/// Radius at the node, and at the other end of a strut: what the strut adds to its two balls, of 1.8 radii.
+double graded_strut(double from, double to, double length) {
+  struct End {
+    double along, radius, cap;
+  };
+  const auto end = [&](double near, double far) {
+    // Where strut and ball have one radius: h^2 + (near + k h)^2 = R^2.
+    const double k = (far - near) / length, ball = 1.8 * near;
+    const double h =
+        (-near * k + std::sqrt(near * near * k * k + (1 + k * k) * (ball * ball - near * near))) / (1 + k * k);
+    return End{h, near + k * h, pi * (ball - h) * (ball - h) * (2 * ball + h) / 3};
+  };
+  const End a = end(from, to), b = end(to, from);
+  const double trunk =
+      pi * (length - a.along - b.along) / 3 * (a.radius * a.radius + a.radius * b.radius + b.radius * b.radius);
+  return trunk - a.cap - b.cap;
+}
+
+// Balls in the sides of the box are halved, and two struts leave each half: no axis of the ball is off that face.
+TEST_F(RealiseTest, DiamondThatIsGradedAtItsNodes) {
+  const auto made =
+      realised(macrostructure(R"(<box dx="10" dy="10" dz="10"/>)") +
+                   R"(<unitCells><unitCell id="u" library="diamond"/></unitCells><patterns><pattern id="c" unitCell="u">
+    <loop index="i" axis="x" count="1" spacing="10"/><loop index="j" axis="y" count="1" spacing="10"/>
+    <loop index="k" axis="z" count="1" spacing="10"/><set parameter="strutRadius" value="0.5 + 0.02*global.x" at="node"/></pattern></patterns>)" +
+                   part(R"(<apply pattern="c" operation="intersection"/>)"),
+               {.mesh = true});
+  const auto radius = [](double x) { return 0.5 + 0.02 * x; };
+  const auto ball = [&](double x) { return 4 * pi / 3 * std::pow(1.8 * radius(x), 3); };
+  // Corners, middles of the six sides, and the four nodes within.
+  double volume =
+      (4 * ball(0) + 4 * ball(10)) / 8 + (ball(0) + ball(10) + 4 * ball(5)) / 2 + 2 * (ball(2.5) + ball(7.5));
+  // From each node within to one corner, and to three middles of sides.
+  for (const double x : {2.5, 7.5})
+    for (const double other : {x - 2.5, x - 2.5, x + 2.5, x + 2.5})
+      volume += 2 * graded_strut(radius(x), radius(other), 2.5 * std::sqrt(3.0));
+  expect_body(made, "lattice", volume);
+}
+
 INSTANTIATE_TEST_SUITE_P(Library, LibraryCells, ::testing::ValuesIn(library_cell_names()),
                          [](const auto& test) { return std::string(test.param); });
 
