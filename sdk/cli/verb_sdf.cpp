@@ -135,6 +135,7 @@ void print_summary(const operations::SdfReport& r, const std::string& out) {
 /// The values of our flags, checked as on any other verb.
 bool take_flags(CLI::App& flags, const std::vector<sdf::GivenFlag>& given, Run& run) {
   std::vector<std::string> backwards;
+  backwards.reserve(given.size());
   for (const sdf::GivenFlag& flag : given)
     backwards.push_back(flag.value.empty() ? flag.name : flag.name + "=" + flag.value);
   std::reverse(backwards.begin(), backwards.end());

@@ -38,11 +38,13 @@ const std::string cell = "<parameter id='a' value='0'/><parameter id='b' value='
 
 std::vector<double> column(const std::vector<CellCopy>& cells, std::size_t parameter) {
   std::vector<double> result;
+  result.reserve(cells.size());
   for (const CellCopy& c : cells) result.push_back(c.parameters.at(parameter));
   return result;
 }
 std::vector<std::int64_t> records_of(const std::vector<CellCopy>& cells) {
   std::vector<std::int64_t> result;
+  result.reserve(cells.size());
   for (const CellCopy& c : cells) result.push_back(c.index.at(0));
   return result;
 }

@@ -389,7 +389,7 @@ bool Making::take_refined() {
     lacks_memory = lacks_memory || bytes_for(finer_takes_) > static_cast<double>(run_.max_memory_bytes);
     if (attempt == most_attempts) break;
     const double affordable =
-        std::min(most_triangles, static_cast<double>(run_.max_memory_bytes / RefinableMesh::bytes_per_triangle) / 2);
+        std::min(most_triangles, static_cast<double>(run_.max_memory_bytes) / RefinableMesh::bytes_per_triangle / 2);
     const double finer = std::min(finer_for(distance, most_finer),
                                   std::sqrt(affordable / static_cast<double>(best.mesh.triangles.size())));
     if (!(finer >= least_finer)) break;

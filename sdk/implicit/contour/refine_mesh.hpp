@@ -74,7 +74,7 @@ class RefinableMesh {
     std::uint32_t a, b;  ///< a < b
     std::uint32_t triangle;
     std::uint8_t side;
-    friend auto operator<=>(const Edge&, const Edge&) = default;
+    friend auto operator<=>(const Edge&, const Edge&) = default;  // NOLINT(modernize-use-nullptr): there is no pointer
   };
 
   struct Cut {

@@ -27,7 +27,8 @@ class Resource {
   /// A file, which need not exist; from whatever a path is made of.
   template <class Path>
   requires(std::is_convertible_v<Path, std::filesystem::path> && !std::is_same_v<std::remove_cvref_t<Path>, Resource>)
-      Resource(Path&& file)  // NOLINT(google-explicit-constructor): a path is a resource
+      // A path is a resource. NOLINTNEXTLINE(google-explicit-constructor,bugprone-forwarding-reference-overload)
+      Resource(Path&& file)
       : name_(std::forward<Path>(file)) {}
   Resource(std::filesystem::path name, std::shared_ptr<const std::string> bytes)
       : name_(std::move(name)), bytes_(std::move(bytes)) {}
