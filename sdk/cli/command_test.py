@@ -188,6 +188,11 @@ class ExitCodes(CommandTest):
         exact = json.loads(self.expect(0, "convert", solid, self.out("c.ply"), "--json").stdout)
         self.assertEqual(exact["engine"], "brep")
         self.assertLess(abs(report["volume"] / exact["volume"] - 1), 0.05)
+        for flag in (["--tolerance", "0.1mm"], ["--sharp"], ["--simplify", "0.1mm"]):
+            chosen = json.loads(self.expect(0, "convert", solid, self.out("c.ply"), "--json", *flag).stdout)
+            self.assertEqual(chosen["engine"], "implicit")
+            self.expect(2, "convert", solid, self.out("d.ply"), "--engine", "brep", *flag, says="--deflection")
+            self.expect(2, "convert", solid, self.out("d.step"), *flag, says="meshes only")
         for flags in (["--engine", "brep", "--spacing", "1mm"], ["--engine", "implicit", "--deflection", "1mm"],
                       ["--samples", "1"], ["--samples", "2,3"], ["--spacing", "0"], ["--spacing", "1mm", "--samples", "9"]):
             self.expect(2, "convert", solid, self.out("d.ply"), *flags)

@@ -37,6 +37,9 @@ std::optional<Made> make_body(const fs::path& document, const MakeOptions& optio
 
 namespace {
 
+/// What the exact engine's triangles cannot be asked for.
+bool is_for_fields(const MakeOptions& options) { return options.tolerance_mm || options.sharp || options.simplify_mm; }
+
 /// Nothing speaks against the flags, or it was reported.
 bool fits(const fs::path& out, const MakeOptions& options, const WriteOptions& write, DiagnosticSink& sink) {
   const auto refuse = [&](std::string why) {
@@ -48,15 +51,20 @@ bool fits(const fs::path& out, const MakeOptions& options, const WriteOptions& w
     return refuse("'" + out.string() + "': no format has this extension; convert writes .step .stp .brep, and " +
                   std::string(mesh_extensions()));
   const bool fine = options.deflection_mm || options.angle_rad,
-             samples = options.spacing_mm || !options.samples.empty();
+             samples = options.spacing_mm || !options.samples.empty(), of_fields = is_for_fields(options);
   if (!*needs_mesh && fine) return refuse("--deflection and --angle have an effect for meshes only");
   if (!*needs_mesh && samples) return refuse("--spacing and --samples have an effect for meshes only");
+  if (!*needs_mesh && of_fields) return refuse("--tolerance, --sharp and --simplify have an effect for meshes only");
   if (options.tolerance_mm && samples)
     return refuse("--tolerance picks the samples; --spacing and --samples have no effect beside it");
   if (!*needs_mesh && options.engine == Engine::implicit)
     return refuse("--engine implicit makes triangles; '" + out.string() + "' is to hold exact faces");
   if (options.engine == Engine::brep && samples)
     return refuse("--spacing and --samples have an effect for the implicit engine only; see --deflection");
+  if (options.engine == Engine::brep && of_fields)
+    return refuse(
+        "--tolerance, --sharp and --simplify have an effect for the implicit engine only; the exact one keeps edges, "
+        "and --deflection says how far its triangles may be off");
   if (options.engine == Engine::brep && options.measure)
     return refuse("--measure has an effect for the implicit engine only; the exact one always measures");
   if (options.engine == Engine::implicit && fine)
@@ -151,6 +159,7 @@ std::optional<ConvertReport> convert_to_mesh(const fs::path& in, const fs::path&
   if (options.engine == Engine::automatic) {
     std::string why = reason_for_fields(*evaluation, options.part);
     if (why.empty() && (options.spacing_mm || !options.samples.empty())) why = "samples are asked for";
+    if (why.empty() && is_for_fields(options)) why = "a tolerance, sharp edges or fewer triangles are asked for";
     if (why.empty()) {
       auto report = convert_exactly(in, out, options, write, told);
       const Diagnostic* beyond = beyond_exact_engine(told);
