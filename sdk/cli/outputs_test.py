@@ -86,6 +86,36 @@ class Outputs(CommandTest):
         self.assertEqual(json.loads(failed.stdout)["diagnostics"][0]["code"], "LIMIT_CELLS")
 
     @needs("convert")
+    @needs("sdf")
+    def test_volumes_of_documents(self):
+        words, design = ["tpms.gyroid", "scale", "5", "-b", "0,0,0,10,10,10", "-s", "20,20,20"], self.folder / "design.meso"
+        self.expect(0, "sdf", *words, "-o", design)
+        for ending in "vtu msh inp nrrd vti".split():
+            by_words, by_document = self.out(f"words.{ending}"), self.out(f"document.{ending}")
+            self.expect(0, "sdf", *words, "-o", by_words)
+            self.expect(0, "convert", design, by_document)
+            with self.subTest(ending=ending):
+                self.assertEqual(by_words.read_bytes(), by_document.read_bytes())
+        # Balls of a volume that is known, in a document that is no words.
+        balls = self.file("balls.meso", document())
+        exact = json.loads(self.expect(0, "convert", balls, self.out("a.stl"), "--json").stdout)["volume"]
+        report = json.loads(self.expect(0, "convert", balls, self.out("a.inp"), "--elements", "100000", "--json").stdout)
+        self.assertLess(abs(report["elements"] / 100000 - 1), 0.3)
+        self.assertLess(abs(report["volume"] / exact - 1), 0.01)
+        self.expect(0, "convert", balls, self.out("a.svg"), "--slices", "axis=z,count=3", "--samples", "40^3")
+        self.assertEqual(len(list(self.out("").glob("a_000?.svg"))), 3)
+        self.expect(0, "convert", balls, self.out("a.nrrd"), "--voxels", "density", "--samples", "40^3")
+        self.out("a.vtu").write_text("old")
+        self.expect(7, "convert", balls, self.out("a.vtu"), "--elements", "1000", "--no-clobber", says="WRITE_EXISTS")
+        for name, *flags in (("b.vtu", "--tolerance", "0.1mm"), ("b.vtu", "--engine", "brep"), ("b.step", "--elements", "9"),
+                             ("b.vtu", "--elements", "9", "--spacing", "1mm"), ("b.stl", "--voxels", "density"),
+                             ("b.vtu", "--deflection", "1mm"), ("b.nrrd", "--slices", "axis=z")):
+            with self.subTest(name=name, flags=flags):
+                self.expect(2, "convert", balls, self.out(name), *flags)
+        self.assertEqual(self.out("a.vtu").read_text(), "old")
+        self.assertEqual(list(self.out("").glob("b.*")), [])
+
+    @needs("convert")
     def test_equal_bytes(self):
         shutil.copy(BEAM.parent / "ibeam.step", self.folder)
         beam = shutil.copy(BEAM, self.folder)

@@ -46,13 +46,16 @@ void add_volume_flags(CLI::App& flags, operations::VolumeOptions& options) {
   last(flags.add_option("--subsamples", options.subsamples, "Samples along each axis of a voxel or pixel"));
 }
 
-int sdf_volume(Run& run, const sdf::Program& program, const operations::VolumeOptions& options) {
-  const auto report = operations::run_volume(program, options, run.sink);
-  if (!report) return run.finish(Json{{"output", program.output}});
-  if (run.flags.json) return run.finish(report_json(*report, program.output));
+int finish_volume(Run& run, const std::optional<operations::VolumeReport>& report, const std::string& out) {
+  if (!report) return run.finish(Json{{"output", out}});
+  if (run.flags.json) return run.finish(report_json(*report, out));
   const int code = run.finish();
-  print_summary(*report, program.output);
+  print_summary(*report, out);
   return code;
+}
+
+int sdf_volume(Run& run, const sdf::Program& program, const operations::VolumeOptions& options) {
+  return finish_volume(run, operations::run_volume(program, options, run.sink), program.output);
 }
 
 }  // namespace meso::cli

@@ -8,6 +8,10 @@
 #include "meso/expr/expression.hpp"
 #include "meso/operations/convert.hpp"
 #include "run.hpp"
+#ifdef MESO_CLI_IMPLICIT
+#include "meso/operations/convert_volume.hpp"
+#include "sdf_volumes.hpp"
+#endif
 
 namespace meso::cli {
 namespace {
@@ -109,6 +113,9 @@ std::optional<std::vector<double>> sample_counts(Run& run, const std::string& te
 struct ConvertFlags {
   bool ascii = false, measure = false, sharp = false;
   std::string spacing, samples, tolerance, simplify;
+#ifdef MESO_CLI_IMPLICIT
+  operations::VolumeOptions volume;
+#endif
 };
 
 int convert_verb(Run& run, const std::string& in, const std::string& out, const ConvertFlags& flags) {
@@ -133,6 +140,16 @@ int convert_verb(Run& run, const std::string& in, const std::string& out, const 
   if (!options || run.sink.has_errors()) return run.finish();
   options->measure = flags.measure;
   options->sharp = flags.sharp;
+#ifdef MESO_CLI_IMPLICIT
+  operations::VolumeOptions volume = flags.volume;
+  volume.ascii = flags.ascii;
+  volume.existing = run.flags.no_clobber ? ExistingFile::refuse : ExistingFile::replace;
+  volume.run = options->run;
+  if (operations::is_volume_output(out))
+    return finish_volume(run, operations::convert_to_volume(in, out, *options, volume, run.sink), out);
+  volume.ascii = false;  // convert() looks at that
+  if (!operations::check_volume_options(out, volume, run.sink)) return run.finish();
+#endif
   const auto report = operations::convert(
       in, out, *options, {.ascii = flags.ascii, .no_clobber = run.flags.no_clobber, .run = options->run}, run.sink);
   if (!report) return run.finish(Json{{"input", in}, {"output", out}});
@@ -144,8 +161,10 @@ int convert_verb(Run& run, const std::string& in, const std::string& out, const 
 }  // namespace
 
 void add_convert(CLI::App& app, Run& run) {
-  CLI::App* verb = app.add_subcommand(
-      "convert", "Realise a document: .step .stp .brep .stl .3mf .ply .obj .off .vtk by the output's extension");
+  CLI::App* verb = app.add_subcommand("convert",
+                                      "Realise a document: .step .stp .brep .stl .3mf .ply .obj .off .vtk, or as a "
+                                      "volume .vtu .msh .inp .nrrd .vti .h5 "
+                                      ".svg .png, by the output's extension");
   static std::string in, out;
   static ConvertFlags flags;
   verb->add_option("IN", in, "Document (.meso, .mesoz)")->required();
@@ -160,6 +179,9 @@ void add_convert(CLI::App& app, Run& run) {
                    "Implicit engine: as few triangles as stay so close to the surface, e.g. 0.05mm; beside the same "
                    "--tolerance, samples are close enough for it");
   verb->add_flag("--measure", flags.measure, "Implicit engine: volume, area, pieces and closed cavities of the mesh");
+#ifdef MESO_CLI_IMPLICIT
+  add_volume_flags(*verb, flags.volume);
+#endif
   add_set_flag(*verb, run.flags);
   add_part_flag(*verb, run.flags);
   add_engine_flag(*verb, run.flags);

@@ -36,11 +36,15 @@ constexpr Format formats[] = {
     {".obj", "Wavefront OBJ", true, true, "triangles, read and written by sdf"},
     {".off", "Object File Format", true, true, "triangles, read and written by sdf"},
     {".vtk", "legacy VTK polygons", false, true, "triangles, written by sdf"},
+    {".vtu", "VTK unstructured grid", false, true, "tetrahedra, written by sdf and convert"},
+    {".inp", "CalculiX, Abaqus", false, true, "tetrahedra, written by sdf and convert"},
+    {".nrrd", "voxels (also .vti, .h5)", false, true, "written by sdf and convert"},
+    {".svg", "slices, drawn (pictures: .png)", false, true, "written by sdf and convert"},
 #endif
 #ifdef MESO_CLI_EVAL
     {".csv", "table", true, true, "a field, read by documents and field; placed cells, written by eval"},
     {".frd", "CalculiX results", true, false, "a field, read by documents and field"},
-    {".msh", "Gmsh node data", true, false, "a field, read by documents and field"},
+    {".msh", "Gmsh", true, true, "node data as a field, read; tetrahedra, written by sdf and convert"},
     {".json", "placed cells", false, true, "written by eval"},
 #endif
 #ifdef MESO_CLI_RENDER

@@ -197,13 +197,7 @@ std::optional<ConvertReport> convert_to_mesh(const fs::path& in, const fs::path&
 
 std::optional<ConvertReport> convert(const fs::path& in, const fs::path& out, MakeOptions options,
                                      const WriteOptions& write, DiagnosticSink& sink) {
-  if (!is_document(in)) {
-    sink.report(
-        {.code = Code::usage,
-         .args = {"'" + in.string() + "' is a body, not a document; write a document that imports it: <import href=\"" +
-                  in.filename().string() + "\"/>"}});
-    return std::nullopt;
-  }
+  if (!check_is_document(in, sink)) return std::nullopt;
   if (!fits(out, options, write, sink)) return std::nullopt;
   const ExistingFile existing = write.no_clobber ? ExistingFile::refuse : ExistingFile::replace;
   if (!OutputFile::can_create(out.string(), existing, sink)) return std::nullopt;

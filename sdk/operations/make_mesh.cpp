@@ -5,108 +5,28 @@
 #include <cmath>
 #include <system_error>
 
+#include "built_field.hpp"
 #include "file_extension.hpp"
-#include "load_sdf_mesh.hpp"
 #include "measured_mesh_sink.hpp"
 #include "mesh_grid.hpp"
 #include "mesh_warnings.hpp"
 #include "meso/base/memory_mesh_sink.hpp"
 #include "meso/base/number.hpp"
-#include "meso/brep/read_step.hpp"
-#include "meso/brep/triangle_mesh.hpp"
 #include "meso/export_mesh/mesh_writer.hpp"
 #include "meso/implicit/accurate_mesh.hpp"
 #include "meso/implicit/compile.hpp"
 #include "meso/implicit/contour.hpp"
 #include "meso/implicit/surface_edges.hpp"
-#include "meso/import_surface_mesh/read_surface_mesh.hpp"
 #include "meso/operations/macrostructure_distance.hpp"
 #include "meso/package/open_document.hpp"
-#include "meso/sdf/build_field.hpp"
-#include "meso/sdf/clamped_values.hpp"
-#include "meso/sdf/thinnest_wall.hpp"
-#include "meso/sdf_document/words_and_documents.hpp"
 #include "stopwatch.hpp"
 
 namespace meso::operations {
 namespace fs = std::filesystem;
 namespace {
 
-/// Curved faces of an exact body stand in the field as triangles this close, relative to the body's size.
-constexpr double import_deflection = 1e-4, import_angle = 0.1;
-
-std::optional<TriangleMesh> import_mesh(const eval::ImportShape& import, const RunOptions& run, DiagnosticSink& sink) {
-  if (brep::is_exact_file(import.file.name())) {
-    const auto body = brep::read_step(
-        import.file, {.relative_deflection = import_deflection, .angle_rad = import_angle, .may_cross = false}, run,
-        sink);
-    return body ? std::optional(brep::triangle_mesh(*body)) : std::nullopt;
-  }
-  return read_surface_mesh_file(import.file, sink, run);
-}
-
-/// What is built: one field, and what is known of it.
-struct Built {
-  implicit::Field field;
-  std::string names;  ///< of the parts
-  double smallest_feature_mm = HUGE_VAL;
-  double density_spacing_mm = HUGE_VAL;
-  brep::CellCounts cells;
-  std::optional<sdf::Program> words{};  ///< of a document that is words
-};
-
-/// A document that is words means what these mean, to the bit.
-std::optional<Built> build_words(const sdf::Program& program, const std::string& part, const MakeOptions& options,
-                                 DiagnosticSink& sink) {
-  const auto load = [&](const std::string& path, DiagnosticSink& told) {
-    return load_sdf_mesh(path, options.run, told);
-  };
-  const auto field = sdf::build_field(program, load, sink);
-  if (!field) return std::nullopt;
-  const auto wall = sdf::thinnest_wall(program);
-  return Built{
-      .field = *field, .names = part, .smallest_feature_mm = wall ? wall->thickness : HUGE_VAL, .words = program};
-}
-
-std::optional<Built> build(const eval::Evaluation& evaluation, const MakeOptions& options, DiagnosticSink& sink) {
-  sdf::WhyNot why_not;
-  if (const auto program = sdf::program_of(evaluation, options.part, why_not)) {
-    const auto& parts = evaluation.document().build.items;
-    return build_words(*program, options.part.empty() ? parts.front().part.text : options.part, options, sink);
-  }
-  const implicit::DocumentFieldOptions field_options{
-      .imports = [&](const eval::ImportShape& import,
-                     DiagnosticSink& told) { return import_mesh(import, options.run, told); },
-      .run = options.run,
-      .spacing_mm = options.spacing_mm.value_or(0)};
-  std::optional<Built> all;
-  for (const PlacedPart& item : built_parts(evaluation, options.part, sink)) {
-    const auto placement = evaluation.placement(item.placement, sink);
-    const auto part = placement ? implicit::field_of_part(evaluation, *item.part, field_options, sink) : std::nullopt;
-    if (!part) return std::nullopt;
-    const implicit::Field placed = implicit::moved(part->field, *placement);
-    if (!all)
-      all = Built{placed, item.part->id.text};
-    else
-      all->field = implicit::union_of(all->field, placed), all->names += ", " + item.part->id.text;
-    all->smallest_feature_mm = std::min(all->smallest_feature_mm, part->smallest_feature_mm);
-    all->density_spacing_mm = std::min(all->density_spacing_mm, part->density_spacing_mm);
-    all->cells.placed += part->cells_placed;
-    all->cells.kept += part->cells_kept;
-  }
-  return all;
-}
-
-/// Shares beyond 0 and 1. A weight's clamp() stands in the document.
-void warn_of_clamped(const Built& built, const Box3& box, DiagnosticSink& sink) {
-  if (!built.words) return;
-  std::vector<sdf::Clamped> clamped = sdf::clamped_values(*built.words, box);
-  std::erase_if(clamped, [](const sdf::Clamped& c) { return c.made_by->verb != sdf::Verb::density; });
-  sdf::report_clamped(clamped, sink);
-}
-
 /// Of what samples as far apart as these do not show.
-void warn_of_samples(const Built& built, const MakeOptions& options, const ConvertReport& report,
+void warn_of_samples(const BuiltField& built, const MakeOptions& options, const ConvertReport& report,
                      DiagnosticSink& sink) {
   if (report.mesh) warn_of_cavities(*report.mesh, sink);
   if (built.words && warn_of_period(*built.words, report.spacing_mm, sink)) return;
@@ -122,7 +42,7 @@ void warn_of_samples(const Built& built, const MakeOptions& options, const Conve
 }
 
 /// Streams from the grid; or, from a tolerance or simplified, by way of a mesh in memory. Tells the report.
-bool stream_mesh(const Built& built, const implicit::Grid& grid, const MakeOptions& options, MeshSink& into,
+bool stream_mesh(const BuiltField& built, const implicit::Grid& grid, const MakeOptions& options, MeshSink& into,
                  ConvertReport& report, DiagnosticSink& sink) {
   const auto source_on = [&](const implicit::Grid& on) {
     return implicit::compile(built.field.term(), on, {}, options.run, sink);
@@ -165,8 +85,9 @@ bool stream_mesh(const Built& built, const implicit::Grid& grid, const MakeOptio
 }
 
 /// Into a file, measured on the way if that is asked for.
-bool write_mesh_file(const Built& built, const implicit::Grid& grid, const fs::path& out, const MakeOptions& options,
-                     const WriteOptions& write, ConvertReport& report, DiagnosticSink& sink) {
+bool write_mesh_file(const BuiltField& built, const implicit::Grid& grid, const fs::path& out,
+                     const MakeOptions& options, const WriteOptions& write, ConvertReport& report,
+                     DiagnosticSink& sink) {
   auto file = OutputFile::create(out.string(), write.no_clobber ? ExistingFile::refuse : ExistingFile::replace, sink);
   if (!file) return false;
   const MeshFormat format = *mesh_format_of(out.string());
@@ -209,14 +130,9 @@ std::optional<eval::Evaluation> open_document(const fs::path& document, const Ma
 std::optional<ConvertReport> make_mesh(const eval::Evaluation& evaluation, const fs::path& out,
                                        const MakeOptions& options, const WriteOptions& write, DiagnosticSink& sink) {
   Stopwatch watch;
-  const auto built = build(evaluation, options, sink);
+  const auto built = built_field(evaluation, options, sink);
   if (!built) return std::nullopt;
-  const Box3 bounds = built->field.bounds();
-  if (bounds.empty()) {
-    sink.report({.code = Code::geometry_empty, .args = {built->names}});
-    return std::nullopt;
-  }
-  const auto grid = mesh_grid(evaluation, options, bounds, built->smallest_feature_mm, sink);
+  const auto grid = mesh_grid(evaluation, options, built->field.bounds(), built->smallest_feature_mm, sink);
   if (!grid) return std::nullopt;
   ConvertReport report{.engine = "implicit", .way = "field", .cells = built->cells, .closed = true};
   report.seconds.realise = watch.lap();

@@ -94,4 +94,13 @@ std::optional<Prepared> prepare(const fs::path& document, const MakeOptions& opt
                   .seconds = {.read = read, .evaluate = watch.lap()}};
 }
 
+bool check_is_document(const std::filesystem::path& in, DiagnosticSink& sink) {
+  if (is_document(in)) return true;
+  sink.report(
+      {.code = Code::usage,
+       .args = {"'" + in.string() + "' is a body, not a document; write a document that imports it: <import href=\"" +
+                in.filename().string() + "\"/>"}});
+  return false;
+}
+
 }  // namespace meso::operations

@@ -20,6 +20,9 @@ struct Prepared {
 [[nodiscard]] std::optional<Prepared> prepare(const std::filesystem::path& document, const MakeOptions& options,
                                               DiagnosticSink& sink);
 
+/// False: it is a body, reported.
+[[nodiscard]] bool check_is_document(const std::filesystem::path& in, DiagnosticSink& sink);
+
 /// Smallest edge of the boxes of the patterns' first cells, in millimetres.
 [[nodiscard]] std::optional<double> smallest_cell_edge(const eval::Evaluation& evaluation);
 

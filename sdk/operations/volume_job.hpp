@@ -16,7 +16,7 @@ struct VolumeJob {
   Box3 box;
   std::array<std::int32_t, 3> samples{};
   DiagnosticSink& sink;
-  const sdf::Program& program;
+  const sdf::Program* words = nullptr;  ///< that the field was made from, if it was
   VolumeReport report{};
 
   /// Nothing: stopped, reported.

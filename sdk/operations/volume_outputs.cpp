@@ -129,13 +129,15 @@ bool write_tetrahedra(VolumeJob& job) {
   job.report.cells = lattice.cells;
   if (mesh.tets.empty()) {
     job.sink.report({.code = Code::sdf_empty, .args = {job.path}});
-  } else if (warn_of_period(job.program, lattice.spacing, job.sink)) {
+  } else if (job.words != nullptr && warn_of_period(*job.words, lattice.spacing, job.sink)) {
     // It is not that solid: nothing else counts.
   } else if (const double thickness = thickness_of(mesh, quality.volume); thickness < lattice.spacing) {
     job.sink.report({.code = Code::sdf_coarse, .args = {format_number(thickness), format_number(lattice.spacing)}});
   }
   return true;
 }
+
+bool is_tetrahedra_output(const std::string& path) { return is_tetrahedra(lower_extension(path)); }
 
 bool is_volume_output(const std::string& path) {
   const std::string extension = lower_extension(path);
@@ -165,8 +167,6 @@ bool check_volume_options(const std::string& path, const VolumeOptions& o, Diagn
 
 std::optional<VolumeReport> run_volume(const sdf::Program& program, const VolumeOptions& options,
                                        DiagnosticSink& sink) {
-  Stopwatch watch;
-  const std::string extension = lower_extension(program.output);
   if (!check_volume_options(program.output, options, sink)) return std::nullopt;
   const auto load = [&](const std::string& path,
                         DiagnosticSink& told) -> std::shared_ptr<const implicit::ExternalField> {
@@ -177,20 +177,33 @@ std::optional<VolumeReport> run_volume(const sdf::Program& program, const Volume
   if (!field) return std::nullopt;
   const auto box = sdf::box_of(program, *field, sink);
   if (!box) return std::nullopt;
-  VolumeJob job{
-      .path = program.output, .options = options, .field = *field, .box = box->box, .sink = sink, .program = program};
+  std::array<std::int32_t, 3> samples{};
   if (program.samples.size() == 1) {
-    job.samples = implicit::nodes_for_total(job.box, program.samples[0]);
+    samples = implicit::nodes_for_total(box->box, program.samples[0]);
   } else {
-    for (std::size_t i = 0; i < 3; ++i) job.samples[i] = static_cast<std::int32_t>(program.samples[i]);
+    for (std::size_t i = 0; i < 3; ++i) samples[i] = static_cast<std::int32_t>(program.samples[i]);
   }
+  return write_volume(program.output, {*field, box->box, samples, &program}, options, sink);
+}
+
+std::optional<VolumeReport> write_volume(const std::string& path, const VolumeSource& from,
+                                         const VolumeOptions& options, DiagnosticSink& sink) {
+  const Stopwatch watch;
+  const std::string extension = lower_extension(path);
+  VolumeJob job{.path = path,
+                .options = options,
+                .field = from.field,
+                .box = from.box,
+                .samples = from.samples,
+                .sink = sink,
+                .words = from.words};
   const bool written = is_tetrahedra(extension) ? write_tetrahedra(job)
                        : is_voxels(extension)   ? write_voxels(job)
                                                 : write_slices(job);
   if (!written) return std::nullopt;
-  if (!is_tetrahedra(extension)) warn_of_period(program, spacing_of_samples(job), sink);
+  if (from.words != nullptr && !is_tetrahedra(extension)) warn_of_period(*from.words, spacing_of_samples(job), sink);
   std::error_code error;
-  if (job.report.bytes == 0) job.report.bytes = std::filesystem::file_size(program.output, error);
+  if (job.report.bytes == 0) job.report.bytes = std::filesystem::file_size(path, error);
   if (error) job.report.bytes = 0;
   job.report.seconds = watch.total();
   return job.report;

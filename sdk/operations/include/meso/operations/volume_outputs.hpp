@@ -18,11 +18,13 @@
 
 #include "meso/base/output_file.hpp"
 #include "meso/base/run_options.hpp"
+#include "meso/implicit/field.hpp"
 #include "meso/sdf/program.hpp"
 
 namespace meso::operations {
 
 [[nodiscard]] bool is_volume_output(const std::string& path);
+[[nodiscard]] bool is_tetrahedra_output(const std::string& path);
 
 struct VolumeOptions {
   std::optional<double> elements{};     ///< about so many tetrahedra
@@ -49,6 +51,17 @@ struct VolumeReport {
   std::uint64_t files = 1, bytes = 0;
   double seconds = 0;
 };
+
+/// What is sampled: a field, in a box, by so many samples along its axes.
+struct VolumeSource {
+  implicit::Field field;
+  Box3 box;
+  std::array<std::int32_t, 3> samples{};
+  const sdf::Program* words = nullptr;  ///< that the field was made from, if it was: for warnings
+};
+/// `options` were checked.
+[[nodiscard]] std::optional<VolumeReport> write_volume(const std::string& path, const VolumeSource& from,
+                                                       const VolumeOptions& options, DiagnosticSink& sink);
 
 [[nodiscard]] std::optional<VolumeReport> run_volume(const sdf::Program& program, const VolumeOptions& options,
                                                      DiagnosticSink& sink);

@@ -33,7 +33,7 @@ struct TermNode {
   expr::Op op{};
   std::uint32_t axis = 0;
   double number = 0;
-  std::vector<Term> operands{};
+  std::vector<Term> operands;  // no initializer: clang would need the class whole here
   std::shared_ptr<const ExternalField> external{};
   Affine field_from_world{};  ///< of an external leaf
 
