@@ -337,13 +337,17 @@ std::optional<ClippedLattice> clipped_lattice(const Found& found, const Index3& 
   DiagnosticSink first, second;
   auto made = attempt(found.cell, poles_aside ? Ways::first : Ways::all, first);
   const bool is_given_up = made && made->is_given_up;
+  if (is_given_up) made.reset();
   bool is_second = false;
-  if ((!made || is_given_up) && poles_aside && !context.run.should_stop()) {
+  if (!made && poles_aside && !context.run.should_stop()) {
     made = attempt(*poles_aside, Ways::all, second);
-    is_second = made.has_value();
-    if (!made && is_given_up && !context.run.should_stop()) made = attempt(found.cell, Ways::all, first);
+    is_second = made || context.run.should_stop();
+    if (!is_second && is_given_up) made = attempt(found.cell, Ways::all, first);
   }
-  for (const Diagnostic& d : (is_second ? second : first).diagnostics()) context.sink.report(d);
+  const DiagnosticSink& told = is_second ? second : first;
+  for (const Diagnostic& d : told.diagnostics()) context.sink.report(d);
+  if (is_given_up && !made && told.diagnostics().empty())  // stopped between the two
+    context.sink.report({.code = context.run.out_of_time() ? Code::limit_time : Code::cancelled});
   return made;
 }
 

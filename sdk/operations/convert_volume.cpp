@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "meso/operations/convert_volume.hpp"
 
-#include <algorithm>
-
 #include "built_field.hpp"
 #include "make_mesh.hpp"
 #include "mesh_grid.hpp"
@@ -29,11 +27,6 @@ bool fits(const std::string& out, const MakeOptions& options, const VolumeOption
   return check_volume_options(out, volume, sink);
 }
 
-bool states_samples(const Document& document) {
-  return std::ranges::any_of(document.build.items,
-                             [](const BuildItem& item) { return item.mesh && item.mesh->samples; });
-}
-
 }  // namespace
 
 std::optional<VolumeReport> convert_to_volume(const std::filesystem::path& in, const std::string& out,
@@ -48,7 +41,7 @@ std::optional<VolumeReport> convert_to_volume(const std::filesystem::path& in, c
   if (!grid) return std::nullopt;
   VolumeOptions how = volume;
   if (is_tetrahedra_output(out) && !options.spacing_mm && options.samples.empty() && !how.elements &&
-      !states_samples(evaluation->document()))
+      !states_samples(evaluation->document(), options.part))
     how.elements = default_elements;
   auto report =
       write_volume(out, {built->field, grid->box, grid->nodes, built->words ? &*built->words : nullptr}, how, sink);

@@ -139,4 +139,9 @@ std::optional<Grid> mesh_grid(const eval::Evaluation& evaluation, const MakeOpti
   return grid;
 }
 
+bool states_samples(const Document& document, const std::string& part_id) {
+  const MeshSettings* stated = settings_of(document, part_id);
+  return stated != nullptr && stated->samples;
+}
+
 }  // namespace meso::operations

@@ -24,6 +24,9 @@ struct PlacedPart {
                                                       const Box3& bounds, double smallest_feature_mm,
                                                       DiagnosticSink& sink);
 
+/// Whether that part's <mesh>, or the build's, says how many samples.
+[[nodiscard]] bool states_samples(const Document& document, const std::string& part_id);
+
 inline constexpr double features_per_sample = 5, most_default_samples = 1e9;
 
 }  // namespace meso::operations

@@ -126,27 +126,31 @@ class PointChecks {
     return true;
   }
 
-  /// Where rounded bodies touch, what is asked around a point hops over the gap between them; the triangles do not. So
-  /// many points that each would take long are no such gap.
+  /// Where rounded bodies touch, what is asked around a point hops over the gap between them; the triangles do not.
+  /// What is nearer to its own triangles than `near` is therefore none; of very many points, the first ones speak for
+  /// all.
   void forget_near_triangles(std::vector<std::size_t>& wrong, const std::vector<Vec3>& places, double near) const {
-    constexpr std::size_t most_in_gaps = 10'000;
-    if (wrong.empty() || wrong.size() > most_in_gaps) return;
-    std::vector<bool> is_near(wrong.size(), false);
+    constexpr std::size_t most_asked = 2'000;
+    const std::size_t asked = std::min(wrong.size(), most_asked);
+    if (asked == 0) return;
+    std::vector<bool> is_near(asked, false);
     const Vec3 margin{near, near, near};
     brep::triangles_of(made_.realisation.body)([&](std::span<const Triangle> block) {
+      if (run_.should_stop()) return;
       for (const Triangle& t : block) {
         Box3 box;
         for (const Vec3 corner : t) box.extend(corner);
         box = {box.min - margin, box.max + margin};
-        for (std::size_t k = 0; k < wrong.size(); ++k) {
+        for (std::size_t k = 0; k < asked; ++k) {
           const Vec3 p = places[wrong[k]];
-          if (box.intersects({p, p}) && norm(to_closest_point(t, p)) <= near) is_near[k] = true;
+          if (!is_near[k] && box.intersects({p, p}) && norm(to_closest_point(t, p)) <= near) is_near[k] = true;
         }
       }
     });
+    if (std::ranges::all_of(is_near, std::identity())) return wrong.clear();
     std::size_t kept = 0;
     for (std::size_t k = 0; k < wrong.size(); ++k)
-      if (!is_near[k]) wrong[kept++] = wrong[k];
+      if (k >= asked || !is_near[k]) wrong[kept++] = wrong[k];
     wrong.resize(kept);
   }
 

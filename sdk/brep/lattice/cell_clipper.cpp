@@ -79,13 +79,13 @@ ClippedCell CellClipper::clip(std::uint32_t kind, const Index3& cell, const std:
       made.attempts = tried;
       if (made.fault.empty() && made.edge_tolerance <= rough) return made;
       if (made.fault.empty() && (!best || made.edge_tolerance < best->edge_tolerance)) best = made;
-      if (fault.empty()) fault = made.fault;
+      if (fault.empty()) fault = made.fault.empty() ? "its edges are known too roughly" : made.fault;
     } catch (const Standard_Failure& failure) {
       if (fault.empty()) fault = what(failure);
     }
   }
   if (run_.should_stop()) return {.fault = "stopped"};
-  if (best) return *best;
+  if (best && ways == Ways::all) return *best;
   const auto listed = [](const auto& values) {
     std::string out;
     for (std::size_t i = 0; i < 3; ++i) out += (i == 0 ? "(" : ", ") + format_number(values[i]);

@@ -167,14 +167,18 @@ struct Farthest {
     point = p;
     distance = d;
   }
-  /// What `side` says of the first point of which it can say anything: where surfaces touch, it may be on both. 0: of
-  /// none.
+  /// What `side` says of the farthest point; where surfaces touch, it may be on both: then what it says of all others
+  /// of which it can say anything. 0: nothing, or both.
   template <typename Side>
   [[nodiscard]] int side_by(Side side) const {
     if (const int known = side(point); known != 0) return known;
-    for (std::size_t i = 0; i < all.size(); i += 1 + all.size() / witnesses)
-      if (const int known = side(all[i]); known != 0) return known;
-    return 0;
+    int agreed = 0;
+    for (std::size_t i = 0; i < all.size(); i += 1 + all.size() / witnesses) {
+      const int known = side(all[i]);
+      if (known != 0 && known == -agreed) return 0;
+      if (known != 0) agreed = known;
+    }
+    return agreed;
   }
   /// True where one of those that are clear is on the other side.
   template <typename Contains>

@@ -56,8 +56,8 @@ class EdgesAway {
     Vec3 from = at(0);
     for (int i = 1; i <= spans; ++i) {
       const Vec3 to = at(i);
-      // Between two of 17 points of a turn, a circle is a tenth of their distance off the line.
-      const double by = by_ + (is_line ? 0 : norm(to - from) / 4);
+      // Between two of 17 points of a turn, an ellipse twenty times as long as wide is no farther off than they are.
+      const double by = by_ + BRep_Tool::Tolerance(edge) + (is_line ? 0 : norm(to - from));
       Box3 box;
       box.extend(from);
       box.extend(to);
