@@ -159,7 +159,7 @@ bool FaceDivision::intersect(const RunOptions& run) {
     return true;
   }
   const Handle(StopWatch) watch = new StopWatch(run);
-  CrossingFiller filler;
+  CrossingFiller filler(options_.size);
   filler.SetArguments(arguments);
   filler.SetFuzzyValue(options_.fuzzy);
   if (!options_.all_faces) {

@@ -4,6 +4,8 @@
 #include <ElSLib.hxx>
 #include <numbers>
 
+#include "lattice/turned_spline.hpp"
+
 namespace meso::brep {
 namespace {
 
@@ -16,8 +18,9 @@ constexpr double steepest = 1.3;        ///< latitude of a patch on a sphere
 /// A surface with parameters that are regular where the cell is.
 struct LocalSurface {
   Handle(Geom_Surface) surface;
-  bool turned = false;  ///< its parameters are not those of the face
-  double around = 0;    ///< of a torus: the second parameter is told within pi of this one
+  bool turned = false;             ///< its parameters are not those of the face
+  std::array<double, 2> period{};  ///< of the parameters, where points of one triangle may be told apart by one
+  std::array<double, 2> around{};  ///< parameters are told within half a period of these
 };
 
 gp_Ax3 facing(const gp_Ax3& position, Vec3 at) {
@@ -30,25 +33,41 @@ gp_Ax3 facing(const gp_Ax3& position, Vec3 at) {
   return out;
 }
 
-LocalSurface local_surface(const TopoDS_Face& face, Vec3 at) {
+LocalSurface local_spline(const Handle(Geom_Surface) & surface, const std::array<double, 2>& at) {
+  const auto spline = Handle(Geom_BSplineSurface)::DownCast(surface);
+  const Handle(Geom_BSplineSurface) turned = spline.IsNull() ? spline : turned_to(spline, at);
+  if (turned.IsNull()) return {surface};
+  LocalSurface out{Handle(Geom_Surface)(turned), true};
+  ParameterRange whole;
+  turned->Bounds(whole.low[0], whole.high[0], whole.low[1], whole.high[1]);
+  for (std::size_t i = 0; i < 2; ++i) {
+    if (!(i == 0 ? spline->IsUClosed() : spline->IsVClosed())) continue;
+    out.period[i] = whole.high[i] - whole.low[i];
+    out.around[i] = 0.5 * (whole.low[i] + whole.high[i]);
+  }
+  return out;
+}
+
+/// About a point of space, and the parameters of a point of the surface near it.
+LocalSurface local_surface(const TopoDS_Face& face, Vec3 at, const std::array<double, 2>& near) {
   const BRepAdaptor_Surface surface(face, false);
   switch (surface.GetType()) {
     case GeomAbs_Cylinder: {
       gp_Cylinder cylinder = surface.Cylinder();
       cylinder.SetPosition(facing(cylinder.Position(), at));
-      return {new Geom_CylindricalSurface(cylinder), true};
+      return {new Geom_CylindricalSurface(cylinder), true, {2 * pi, 0}, {pi, 0}};
     }
     case GeomAbs_Cone: {
       gp_Cone cone = surface.Cone();
       cone.SetPosition(facing(cone.Position(), at));
-      return {new Geom_ConicalSurface(cone), true};
+      return {new Geom_ConicalSurface(cone), true, {2 * pi, 0}, {pi, 0}};
     }
     case GeomAbs_Torus: {
       gp_Torus torus = surface.Torus();
       torus.SetPosition(facing(torus.Position(), at));
       double u = 0, v = 0;
       ElSLib::Parameters(torus, to_pnt(at), u, v);
-      return {new Geom_ToroidalSurface(torus), true, v};
+      return {new Geom_ToroidalSurface(torus), true, {2 * pi, 2 * pi}, {pi, v}};
     }
     case GeomAbs_Sphere: {
       gp_Sphere sphere = surface.Sphere();
@@ -58,28 +77,30 @@ LocalSurface local_surface(const TopoDS_Face& face, Vec3 at) {
       gp_Ax3 position(sphere.Location(), gp_Ax2(sphere.Location(), back).XDirection(), back);
       if (!sphere.Position().Direct()) position.YReverse();
       sphere.SetPosition(position);
-      return {new Geom_SphericalSurface(sphere), true};
+      return {new Geom_SphericalSurface(sphere), true, {2 * pi, 0}, {pi, 0}};
     }
     case GeomAbs_Plane:
       return {new Geom_Plane(surface.Plane())};
     default:
-      return {BRep_Tool::Surface(face)};
+      return local_spline(BRep_Tool::Surface(face), near);
   }
 }
 
-std::array<double, 2> parameters_on(const LocalSurface& local, Vec3 p) {
+/// Of a point of the surface, and `known` of the face.
+std::array<double, 2> parameters_on(const LocalSurface& local, Vec3 p, const std::array<double, 2>& known) {
   const Handle(Geom_Surface)& surface = local.surface;
-  std::array<double, 2> at{};
+  std::array<double, 2> at = known;
   const gp_Pnt point = to_pnt(p);
   if (const auto cylinder = Handle(Geom_CylindricalSurface)::DownCast(surface))
     ElSLib::Parameters(cylinder->Cylinder(), point, at[0], at[1]);
   else if (const auto cone = Handle(Geom_ConicalSurface)::DownCast(surface))
     ElSLib::Parameters(cone->Cone(), point, at[0], at[1]);
-  else if (const auto torus = Handle(Geom_ToroidalSurface)::DownCast(surface)) {
+  else if (const auto torus = Handle(Geom_ToroidalSurface)::DownCast(surface))
     ElSLib::Parameters(torus->Torus(), point, at[0], at[1]);
-    at[1] = local.around + std::remainder(at[1] - local.around, 2 * pi);
-  } else if (const auto sphere = Handle(Geom_SphericalSurface)::DownCast(surface))
+  else if (const auto sphere = Handle(Geom_SphericalSurface)::DownCast(surface))
     ElSLib::Parameters(sphere->Sphere(), point, at[0], at[1]);
+  for (std::size_t i = 0; i < 2; ++i)
+    if (local.period[i] > 0) at[i] = local.around[i] + std::remainder(at[i] - local.around[i], local.period[i]);
   return at;
 }
 
@@ -203,21 +224,25 @@ TopoDS_Face LocalFaces::patch(std::uint32_t number, const Index3& cell) const {
   const BodySurface::Face& mesh = surface_.face(number);
   const TopoDS_Face& face = faces_[number].face;
   const Vec3 centre = grid_.centre(cell), grown = grown_half(grid_, mesh.reach, margin);
-  const LocalSurface local = local_surface(face, centre);
+  std::array<double, 2> near{};
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+    if (overlaps(mesh.triangle(t), centre, grown)) near = mesh.parameters[mesh.triangles[t][0]];
+  const LocalSurface local = local_surface(face, centre, near);
   if (local.surface.IsNull()) return {};
   const auto parameters = [&](std::uint32_t node) {
-    return local.turned ? parameters_on(local, mesh.nodes[node]) : mesh.parameters[node];
+    return local.turned ? parameters_on(local, mesh.nodes[node], mesh.parameters[node]) : mesh.parameters[node];
   };
-  const bool is_torus = !Handle(Geom_ToroidalSurface)::DownCast(local.surface).IsNull();
   const auto wraps = [&](const std::array<double, 2>& p, const std::array<double, 2>& q) {
-    return local.turned && (std::fabs(p[0] - q[0]) > pi || (is_torus && std::fabs(p[1] - q[1]) > pi));
+    return (local.period[0] > 0 && std::fabs(p[0] - q[0]) > local.period[0] / 2) ||
+           (local.period[1] > 0 && std::fabs(p[1] - q[1]) > local.period[1] / 2);
   };
   ParameterRange range;
   if (mesh.planar) {
     range = range_on_plane(BRepAdaptor_Surface(face, false).Plane(), centre, grown);
   } else {
     range = range_of_triangles(mesh, centre, grown, parameters, wraps);
-    if (!local.turned) keep_within(range, *local.surface);
+    if (!local.turned || !Handle(Geom_BSplineSurface)::DownCast(local.surface).IsNull())
+      keep_within(range, *local.surface);
   }
   if (range.empty()) return {};
   if (!Handle(Geom_SphericalSurface)::DownCast(local.surface).IsNull() &&

@@ -2,13 +2,9 @@
 #pragma once
 // The edges along which faces of a cell and of a body cut each other, fitted to both surfaces again. Private.
 //
-// OpenCASCADE walks along the intersection of two surfaces and lays a curve through what it met: on B-spline surfaces
-// that curve is off by up to a hundredth of the cell, and neighbours that cut a common wall are off differently. Here
-// its points are moved onto both surfaces by Newton's method, the edge's ends onto the old edges that they divide, and
-// a spline of degree 7 is laid through them, with its images in both parameter planes. Where that does not converge
-// (surfaces that touch, an edge on an edge) everything stays as it was.
-//
-// Cost: about 0.2 ms for each edge on quadrics, 1 ms on B-spline surfaces. Writes to the edges.
+// The ends are moved onto the old edges that they divide, so that neighbours that cut a common wall agree, and the
+// curves onto both surfaces (curve_fit.hpp). Where that does not converge (surfaces that touch, an edge on an edge)
+// everything stays as it was. Writes to the edges.
 
 #include <vector>
 
