@@ -2,9 +2,11 @@
 #include "meso/implicit/accurate_mesh.hpp"
 
 #include <algorithm>
-#include <atomic>
+#include <array>
+#include <charconv>
 #include <cmath>
 
+#include "counted_source.hpp"
 #include "meso/base/memory_mesh_sink.hpp"
 #include "meso/base/memory_outlook.hpp"
 #include "meso/base/number.hpp"
@@ -25,53 +27,37 @@ Grid with_spacing(const Box3& box, double spacing) {
   return grid;
 }
 
+/// Points of triangles that have a corner in which two sheets meet at less than some 70 degrees: there, a little less
+/// is soon too little.
+std::vector<char> beside_wedges(const TriangleMesh& mesh) {
+  constexpr double turned = -0.3;
+  std::vector<Vec3> first(mesh.points.size());
+  std::vector<char> at(mesh.points.size(), 0), beside(mesh.points.size(), 0);
+  for (const auto& [a, b, c] : mesh.triangles) {
+    const Vec3 n = cross(mesh.points[b] - mesh.points[a], mesh.points[c] - mesh.points[a]);
+    for (const std::uint32_t p : {a, b, c}) {
+      if (norm(first[p]) == 0) first[p] = n;
+      if (dot(n, first[p]) < turned * norm(n) * norm(first[p])) at[p] = 1;
+    }
+  }
+  for (const auto& t : mesh.triangles)
+    if (std::ranges::any_of(t, [&](std::uint32_t p) { return at[p] != 0; }))
+      for (const std::uint32_t p : t) beside[p] = 1;
+  return beside;
+}
+
+/// As many digits as a reader wants.
+std::string rounded(double value) {
+  std::array<char, 32> text{};
+  const auto end = std::to_chars(text.data(), text.data() + text.size(), value, std::chars_format::general, 4).ptr;
+  return {text.data(), end};
+}
+
 /// A mesh in memory counts as such.
 class WorkingMesh final : public MemoryMeshSink {
  public:
   using MemoryMeshSink::MemoryMeshSink;
   [[nodiscard]] std::uint64_t bytes_per_triangle() const override { return RefinableMesh::bytes_per_triangle; }
-};
-
-/// Counts the samples that another source gives, on its grid and wherever else they are taken.
-class CountedSource final : public GridSource {
- public:
-  struct Counts {
-    std::uint64_t on_grids = 0;
-    std::atomic<std::uint64_t> at_points{0};
-  };
-
-  CountedSource(std::unique_ptr<GridSource> source, Counts& counts) : source_(std::move(source)), counts_(counts) {
-    counts_.on_grids += grid().node_count();  // planes between bricks, which two threads may sample, once
-  }
-
-  [[nodiscard]] const Grid& grid() const override { return source_->grid(); }
-  [[nodiscard]] std::unique_ptr<GridSampler> sampler() const override {
-    return std::make_unique<Sampler>(source_->sampler(), counts_);
-  }
-  [[nodiscard]] bool signs_only() const override { return source_->signs_only(); }
-  [[nodiscard]] double exact_within() const override { return source_->exact_within(); }
-  [[nodiscard]] std::uint64_t bytes() const override { return source_->bytes(); }
-
- private:
-  class Sampler final : public GridSampler {
-   public:
-    Sampler(std::unique_ptr<GridSampler> sampler, Counts& counts) : sampler_(std::move(sampler)), counts_(counts) {}
-    void begin_slab(std::int32_t first, std::int32_t last) override { sampler_->begin_slab(first, last); }
-    void row(std::int32_t j, std::int32_t k, float* values, std::uint64_t* inside) override {
-      sampler_->row(j, k, values, inside);
-    }
-    void values_at(std::span<const Vec3> points, double* out) override {
-      counts_.at_points += points.size();
-      sampler_->values_at(points, out);
-    }
-
-   private:
-    std::unique_ptr<GridSampler> sampler_;
-    Counts& counts_;
-  };
-
-  std::unique_ptr<GridSource> source_;
-  Counts& counts_;
 };
 
 class Making {
@@ -100,14 +86,18 @@ class Making {
   bool resolve(Grid grid);
   bool refine();
   bool take_refined();
+  bool thin();
   bool simplify();
   void measure(TriangleMesh mesh, bool may_move, double tolerance);
+  [[nodiscard]] Diagnostic not_reached(double bound) const;
   [[nodiscard]] Diagnostic takes(double triangles, double least_bytes = 0) const;
   void pass_on(const DiagnosticSink& told);
   [[nodiscard]] double finer_for(double distance, double most) const;
   [[nodiscard]] double triangles_of_finer(double distance) const;
   void expect(double triangles);
   [[nodiscard]] bool fits(double triangles);
+  // What normals tell, and what lies between the points that are looked at, is off by a part of it.
+  [[nodiscard]] double aim() const { return is_smooth() ? 0.7 * options_.tolerance : options_.tolerance; }
   [[nodiscard]] bool is_smooth() const { return options_.tolerance > 0 && !options_.sharp; }
   bool go_on();
   [[nodiscard]] std::function<bool()> not_stopped() const {
@@ -121,6 +111,8 @@ class Making {
   AccurateMesh out_;
   double grid_triangles_ = 0;
   double expected_ = 0;     // triangles of what is under way
+  RefinableMesh::Far far_;  // of the mesh that is taken
+  bool spares_ = false;     // most of the triangles are more than curves ask for
   double finer_takes_ = 0;  // where that will not be enough
   CountedSource::Counts counts_;
   std::unique_ptr<GridSource> source_;
@@ -175,6 +167,13 @@ double bytes_for(double triangles) {
   return bytes_beside + triangles * static_cast<double>(RefinableMesh::bytes_per_triangle);
 }
 
+Diagnostic Making::not_reached(double bound) const {
+  const Vec3 p = far_.place;
+  return {.code = Code::tolerance_not_reached,
+          .args = {rounded(out_.distance), format_number(bound), std::to_string(far_.triangles),
+                   rounded(p.x) + " " + rounded(p.y) + " " + rounded(p.z)}};
+}
+
 Diagnostic Making::takes(double triangles, double least_bytes) const {
   triangles = std::max(triangles, finer_takes_);
   return {.code = Code::limit_tolerance,
@@ -206,32 +205,36 @@ bool Making::fits(double triangles) {
 }
 
 // Before the work begins: how far middles of edges of a coarse mesh are from the surface, at a few of them, tells how
-// many triangles a tolerance takes, to within some factor. Refused is what is beyond the budget by more than that.
+// many triangles a tolerance takes; fewer than it does where thin walls ask for more. Where the surface turns sharply
+// between an edge's ends, one vertex may be all that it takes.
 bool Making::is_affordable(const Grid& coarse) {
   constexpr std::size_t asked = 200;
-  constexpr double unsure = 8;
+  constexpr double unsure = 2, even = 0.8;
   const auto source = counted_on(coarse);
   if (!source) return false;
   TriangleMesh mesh;
   MemoryMeshSink sink(mesh);
   if (!contour(*source, sink, {}, run_, diagnostics_)) return false;
+  SurfaceFeet feet(*source, not_stopped());
   std::vector<PointNearSurface> middles;
-  std::vector<double> halves;  // of the edges: their ends are on the surface
+  std::vector<Vec3> ends, slopes;
+  std::vector<double> values, distances;
   const std::size_t step = mesh.triangles.size() / asked + 1;
   for (std::size_t t = 0; t < mesh.triangles.size(); t += step) {
     const Vec3 a = mesh.points[mesh.triangles[t][0]], b = mesh.points[mesh.triangles[t][1]];
     if (planes_of(coarse.box, a) != 0 || planes_of(coarse.box, b) != 0) continue;
     middles.push_back({.point = (a + b) / 2, .most = norm(a - b) / 2});
-    halves.push_back(norm(a - b) / 2);
+    ends.push_back(a), ends.push_back(b);
   }
   if (middles.empty()) return true;
-  SurfaceFeet feet(*source, not_stopped());
-  std::vector<double> distances;
+  feet.slopes(ends, slopes, values);
   feet.distances(middles, 0.01 * largest_spacing(coarse), distances);
   if (!go_on()) return false;
   double times = 0;
-  for (std::size_t i = 0; i < distances.size(); ++i)
-    times += std::max(1.0, std::min(distances[i], halves[i]) / options_.tolerance);
+  for (std::size_t i = 0; i < distances.size(); ++i) {
+    const bool turns = !(dot(slopes[2 * i], slopes[2 * i + 1]) > even * norm(slopes[2 * i]) * norm(slopes[2 * i + 1]));
+    times += turns && !is_smooth() ? 1 : parts_for(std::min(distances[i], middles[i].most) / aim());
+  }
   const double triangles = times / static_cast<double>(middles.size()) * static_cast<double>(mesh.triangles.size());
   expect(triangles);
   return bytes_for(triangles) <= unsure * static_cast<double>(run_.max_memory_bytes) || fits(triangles);
@@ -325,10 +328,9 @@ bool Making::resolve(Grid grid) {
 
 bool Making::refine() {
   constexpr int most_rounds = 24;
-  // What normals tell, and what lies between the points that are looked at, is off by a part of it.
-  const double aim = is_smooth() ? 0.7 * options_.tolerance : options_.tolerance;
+  const double aim = this->aim();
   const double longer = std::max(1.0, refinable_->distance() / aim);
-  const int patience = 4 + static_cast<int>(std::log2(longer) / 2);  // a round takes distances to a quarter
+  int patience = 4 + static_cast<int>(std::log2(longer) / 2);  // a round takes distances to a quarter
   double left_before = HUGE_VAL;
   std::vector<std::size_t> before;
   for (int round = 0; round < most_rounds; ++round) {
@@ -336,6 +338,8 @@ bool Making::refine() {
     if (!fits(std::max(refinable_->triangles_for(aim), static_cast<double>(refinable_->mesh().triangles.size()))))
       return false;
     // Not at once: creases are better.
+    refinable_->merge(aim);
+    refinable_->measure(aim);
     if (round >= 2) refinable_->flip(aim);
     const std::size_t halved = refinable_->refine(aim);
     if (halved == 0 && refinable_->normals_were_right(options_.tolerance)) break;
@@ -346,6 +350,9 @@ bool Making::refine() {
     left_before = refinable_->distance();
     // Where as many edges are halved as before, what is refined is no surface.
     before.push_back(halved);
+    // A few creases may be found when all else is done.
+    if (refinable_->found_creases() && 1000 * halved < refinable_->mesh().triangles.size())
+      patience = std::max(patience, round + 4);
     if (round >= patience && halved >= before[static_cast<std::size_t>(round - 4)]) break;
   }
   return go_on();
@@ -363,10 +370,8 @@ bool Making::to_tolerance(const Grid& first) {
     out_.distance = farthest_on(out_.grid);
     return true;
   }
-  if (!refine() || !take_refined()) return false;
-  if (out_.distance > options_.tolerance)
-    diagnostics_.report({.code = Code::tolerance_not_reached,
-                         .args = {format_number(out_.distance), format_number(options_.tolerance)}});
+  if (!refine() || !take_refined() || (spares_ && !thin())) return false;
+  if (out_.distance > options_.tolerance) diagnostics_.report(not_reached(options_.tolerance));
   return true;
 }
 
@@ -375,23 +380,38 @@ bool Making::to_tolerance(const Grid& first) {
 // it is not worth any memory and time.
 bool Making::take_refined() {
   constexpr int most_attempts = 4;
-  constexpr double least_finer = 1.3;
+  constexpr double least_finer = 1.3, little_finer = 1.5, much_closer = 0.7;
+  constexpr double few_triangles = 5e5;
+  constexpr double most_spare = 3, least_spared = 5e4;  // fewer are not worth the time
+  constexpr double bytes_to_thin = 500;
   AccurateMesh best;
   bool lacks_memory = false;
+  std::size_t far_before = 0;
+  double distance_before = 0;
   for (int attempt = 1;; ++attempt) {
     const double distance = refinable_->distance();
     const auto triangles = static_cast<double>(refinable_->mesh().triangles.size());
-    if (attempt == 1 || distance < best.distance)
+    const RefinableMesh::Far far = refinable_->what_is_far(options_.tolerance);
+    const bool is_fine = triangles > most_spare * refinable_->triangles_for_curves(options_.tolerance);
+    if (attempt == 1 || distance <= options_.tolerance || distance < much_closer * best.distance) {
+      const bool fits = triangles * bytes_to_thin <= static_cast<double>(run_.max_memory_bytes);
+      far_ = far;
+      spares_ = !is_smooth() && triangles > least_spared && is_fine && fits;
       best = {.mesh = refinable_->take(), .grid = out_.grid, .euler = out_.euler, .distance = distance};
+    }
     if (best.distance <= options_.tolerance) break;
     finer_takes_ = std::max(triangles_of_finer(distance), std::min(triangles, most_triangles));
     expect(finer_takes_);
     lacks_memory = lacks_memory || bytes_for(finer_takes_) > static_cast<double>(run_.max_memory_bytes);
-    if (attempt == most_attempts) break;
+    // Of holes and bridges, a finer grid leaves none or few; as many are something else.
+    const bool helps = attempt == 1 || triangles < few_triangles || far.triangles < far_before / 2 ||
+                       distance < much_closer * distance_before;
+    far_before = far.triangles, distance_before = distance;
+    if (attempt == most_attempts || !helps) break;
     const double affordable =
         std::min(most_triangles, static_cast<double>(run_.max_memory_bytes) / RefinableMesh::bytes_per_triangle / 2);
-    const double finer = std::min(finer_for(distance, most_finer),
-                                  std::sqrt(affordable / static_cast<double>(best.mesh.triangles.size())));
+    const double finer = std::min(triangles < few_triangles ? finer_for(distance, most_finer) : little_finer,
+                                  std::sqrt(affordable / triangles));
     if (!(finer >= least_finer)) break;
     if (!contour_on(with_spacing(out_.grid.box, largest_spacing(out_.grid) / finer))) return false;
     measure(std::move(out_.mesh), true, options_.tolerance);
@@ -403,6 +423,36 @@ bool Making::take_refined() {
   return false;
 }
 
+// Where walls, not curves, ask for the grid, most of its triangles are spare: they are taken away as far as some of the
+// tolerance goes, and what that leaves too far is refined. Around places where refining does not mend it, all are kept
+// the next time.
+bool Making::thin() {
+  constexpr int most_attempts = 3;
+  constexpr double share = 0.6, least_gain = 0.8;
+  AccurateMesh whole = std::move(out_);
+  std::vector<char> kept = beside_wedges(whole.mesh);
+  for (int attempt = 0; attempt < most_attempts; ++attempt) {
+    out_ = {.mesh = whole.mesh, .grid = whole.grid, .euler = whole.euler};
+    refinable_.reset();
+    run_.report("simplifying", static_cast<double>(attempt) / most_attempts);
+    if (!simplify_mesh(out_.mesh, out_.grid.box, share * options_.tolerance, run_, kept)) return go_on();
+    measure(std::move(out_.mesh), false, options_.tolerance);
+    if (!go_on() || !refine()) return false;
+    out_.distance = refinable_->distance();
+    if (static_cast<double>(refinable_->mesh().triangles.size()) >
+        least_gain * static_cast<double>(whole.mesh.triangles.size()))
+      break;
+    if (out_.distance <= std::max(options_.tolerance, whole.distance)) {
+      far_ = refinable_->what_is_far(options_.tolerance);
+      out_.mesh = refinable_->take();
+      return true;
+    }
+    refinable_->mark_around_far(options_.tolerance, feet_->cell(), whole.mesh.points, kept);
+  }
+  out_ = std::move(whole);
+  return true;
+}
+
 // What is left goes with the spacing: how much finer the next grid is.
 double Making::finer_for(double distance, double most) const {
   constexpr double usual = 1.7;
@@ -410,9 +460,11 @@ double Making::finer_for(double distance, double most) const {
 }
 
 // Triangles go with the square of the spacing. Of some fields the next grid is all that it takes, of others what is
-// left goes on as it began: between the two.
+// left goes on as it began: between the two. Told once, by the first grid: of those that memory made too coarse, no
+// more can be told.
 double Making::triangles_of_finer(double distance) const {
-  const double next = finer_for(distance, most_finer), all = finer_for(distance, HUGE_VAL);
+  if (finer_takes_ > 0) return std::max(finer_takes_, 1.2 * grid_triangles_);
+  const double next = finer_for(distance, most_finer), all = std::min(1.5 * next, finer_for(distance, HUGE_VAL));
   return std::sqrt(std::min(grid_triangles_ * next * next, most_triangles) *
                    std::min(grid_triangles_ * all * all, most_triangles));
 }
@@ -433,6 +485,7 @@ bool Making::simplify() {
     if (!simplify_mesh(mesh, out_.grid.box, bound, run_)) return go_on();
     out_.distance = distance_of(mesh);
     if (!go_on()) return false;
+    far_ = refinable_->what_is_far(options_.simplify);
     out_.mesh = refinable_->take();
     if (out_.distance <= options_.simplify) return true;
     if (attempt == 0 && (before = distance_of(whole)) > options_.simplify) break;
@@ -440,8 +493,9 @@ bool Making::simplify() {
   }
   if (!go_on()) return false;
   const bool is_grid = before > options_.simplify && options_.tolerance == 0;
-  diagnostics_.report({.code = is_grid ? Code::simplify_from_coarse : Code::tolerance_not_reached,
-                       .args = {format_number(is_grid ? before : out_.distance), format_number(options_.simplify)}});
+  diagnostics_.report(is_grid ? Diagnostic{.code = Code::simplify_from_coarse,
+                                           .args = {format_number(before), format_number(options_.simplify)}}
+                              : not_reached(options_.simplify));
   return true;
 }
 

@@ -11,6 +11,7 @@
 #include "meso/base/memory_outlook.hpp"
 #include "meso/mesh/audit_mesh.hpp"
 #include "meso/mesh/closest_point.hpp"
+#include "meso/mesh/self_contact.hpp"
 
 namespace meso::implicit {
 namespace {
@@ -257,6 +258,42 @@ TEST(AccurateMesh, TakesAFinerGridWhereBridgesAreLeft) {
   EXPECT_LE(farthest(result.mesh, [&](Vec3 p) { return std::fabs(two(p)); }), 1e-2);
 }
 
+// A sheet that the planes of a box and a cylinder cut, here and there at a grazing angle; its walls are thinner than
+// its curves are wide.
+double cut_sheet(Vec3 p) {
+  const double steep = 2 * pi / 0.9 * 1.5;
+  const double sheet = (std::fabs(gyroid(p, 0.9)) - 0.15) / steep;
+  return std::max({sheet, std::fabs(p.z) - 0.61, std::hypot(p.x, p.y) - 0.83});
+}
+
+/// How far p is from where the field changes its sign, along its slope, axes and diagonals; no less than the distance.
+double off_field(const Function& f, Vec3 p, double most) {
+  const bool inside = f(p) < 0;
+  for (int step = 1; step <= 16; ++step)
+    for (int n = 0; n < 27; ++n) {
+      const Vec3 way{n % 3 - 1.0, n / 3 % 3 - 1.0, n / 9 - 1.0};
+      if (n != 13 && (f(p + most * step / 16 / norm(way) * way) < 0) != inside) return most * step / 16;
+    }
+  return HUGE_VAL;
+}
+
+TEST(AccurateMesh, ComesAsCloseToSheetsThatAreCut) {
+  constexpr double tolerance = 1.2e-2;
+  const AccurateMesh result = made(cut_sheet, {.box = cube()}, {.tolerance = tolerance, .smallest_feature = 0.225});
+  const MeshAudit audit = audit_mesh(result.mesh);
+  EXPECT_TRUE(audit.watertight());
+  EXPECT_EQ(audit.degenerate, 0u);
+  const std::vector<double> heights(result.mesh.triangles.size(), tolerance / 2);
+  EXPECT_EQ(count_self_contacts(result.mesh, heights).deep, 0u);
+  for (std::size_t t = 0; t < result.mesh.triangles.size(); ++t) {
+    const auto& [a, b, c] = result.mesh.triangles[t];
+    const Vec3 middle = (result.mesh.points[a] + result.mesh.points[b] + result.mesh.points[c]) / 3;
+    ASSERT_LE(off_field(cut_sheet, middle, 1.1 * tolerance), 1.1 * tolerance);
+  }
+  // The grid that its walls ask for takes 250,000 triangles, its curves some 15,000.
+  EXPECT_LT(audit.triangles, 30'000u);
+}
+
 TEST(AccurateMesh, SimplifiesABoxToItsCorners) {
   const auto box = [](Vec3 p) {
     return std::max({std::fabs(p.x) - 0.61, std::fabs(p.y) - 0.52, std::fabs(p.z) - 0.43});
@@ -314,6 +351,22 @@ TEST(AccurateMesh, SaysWhatATinyToleranceWouldTake) {
   EXPECT_FALSE(make_accurate_mesh(on(ball), {.box = cube()}, {.tolerance = 1e-9}, {}, diagnostics));
   ASSERT_EQ(diagnostics.error_count(), 1u);
   EXPECT_EQ(diagnostics.diagnostics()[0].code, Code::limit_tolerance);
+}
+
+TEST(AccurateMesh, SaysBeforeTheWorkWhatItTakes) {
+  const AccurateMeshOptions options{.tolerance = 1e-4};
+  const double triangles = static_cast<double>(made(ball, {.box = cube()}, options).mesh.triangles.size());
+  bool has_begun = false;
+  const RunOptions run{.max_memory_bytes = 24 << 20,
+                       .progress = [&](std::string_view stage, double) { has_begun |= stage == "refining"; }};
+  DiagnosticSink diagnostics;
+  EXPECT_FALSE(make_accurate_mesh(on(ball), {.box = cube()}, options, run, diagnostics));
+  ASSERT_EQ(diagnostics.diagnostics().size(), 1u);
+  const Diagnostic& told = diagnostics.diagnostics()[0];
+  ASSERT_EQ(told.code, Code::limit_tolerance) << render(told);
+  EXPECT_GT(std::stod(told.args[1]), triangles / 1.5);
+  EXPECT_LT(std::stod(told.args[1]), triangles * 1.5);
+  EXPECT_FALSE(has_begun);
 }
 
 TEST(AccurateMesh, SaysWhatItTakesWhateverTheBudget) {

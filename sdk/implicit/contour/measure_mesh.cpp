@@ -381,6 +381,24 @@ float RefinableMesh::farthest(const Known& known) {
   return result;
 }
 
+double RefinableMesh::distance_of(std::uint32_t triangle) const {
+  float result = farthest(known_[triangle]);
+  for (const std::uint32_t p : mesh_.triangles[triangle]) result = std::max(result, distances_[p]);
+  return static_cast<double>(result);
+}
+
+RefinableMesh::Far RefinableMesh::what_is_far(double tolerance) const {
+  Far far;
+  double most = tolerance;
+  for (std::uint32_t t = 0; t < known_.size(); ++t) {
+    const double distance = distance_of(t);
+    if (!(distance > tolerance)) continue;
+    ++far.triangles;
+    if (distance > most) most = distance, far.place = mesh_.points[mesh_.triangles[t][0]];
+  }
+  return far;
+}
+
 double RefinableMesh::distance() const {
   float largest = distances_.empty() ? 0 : *std::max_element(distances_.begin(), distances_.end());
   for (const Known& k : known_) largest = std::max(largest, farthest(k));
@@ -389,7 +407,37 @@ double RefinableMesh::distance() const {
 
 double RefinableMesh::triangles_for(double tolerance) const {
   double sum = 0;
-  for (const Known& k : known_) sum += std::max(1.0, static_cast<double>(farthest(k)) / tolerance);
+  for (const Known& k : known_) sum += parts_for(static_cast<double>(farthest(k)) / tolerance);
+  return sum;
+}
+
+void RefinableMesh::mark_around_far(double tolerance, double reach, std::span<const Vec3> points,
+                                    std::span<char> marks) const {
+  std::vector<Box3> far;
+  for (std::uint32_t t = 0; t < known_.size(); ++t) {
+    if (!(distance_of(t) > tolerance)) continue;
+    Box3 box;
+    for (const std::uint32_t p : mesh_.triangles[t]) box.extend(mesh_.points[p]);
+    for (std::size_t axis = 0; axis < 3; ++axis) box.min[axis] -= reach, box.max[axis] += reach;
+    far.push_back(box);
+  }
+  for (std::size_t i = 0; i < points.size(); ++i)
+    for (const Box3& box : far)
+      if (box.intersects({points[i], points[i]})) {
+        marks[i] = 1;
+        break;
+      }
+}
+
+// By edges: of small triangles' middles, only what they are at most is known.
+double RefinableMesh::triangles_for_curves(double tolerance) const {
+  double sum = 0;
+  for (const Known& k : known_) {
+    float most = 0;
+    for (const float edge : k.edge)
+      if (edge != unknown) most = std::max(most, std::fabs(edge));
+    sum += std::min(1.0, static_cast<double>(most) / tolerance);
+  }
   return sum;
 }
 

@@ -41,6 +41,27 @@ bool MeshLinks::stays_manifold(std::uint32_t a, std::uint32_t b) {
   return at_edge == 2;
 }
 
+bool MeshLinks::unfold(std::uint32_t a, std::uint32_t b) {
+  neighbours(a, near_a_);
+  neighbours(b, near_b_);
+  common_.clear();
+  std::set_intersection(near_a_.begin(), near_a_.end(), near_b_.begin(), near_b_.end(), std::back_inserter(common_));
+  if (common_.size() != 2 || near_a_.size() < 4 || near_b_.size() < 4) return false;
+  const std::uint32_t c = common_[0], d = common_[1];
+  std::array<std::uint32_t, 2> folded{none, none};
+  unsigned at_edge = 0;
+  visit_triangles(c, [&](std::uint32_t t) {
+    if (!is_corner(t, d)) return;
+    ++at_edge;
+    if (is_corner(t, a)) folded[0] = t;
+    if (is_corner(t, b)) folded[1] = t;
+  });
+  if (at_edge != 2 || folded[0] == none || folded[1] == none) return false;
+  for (const std::uint32_t t : folded) triangles_[t][0] = none;
+  for (const std::uint32_t p : {a, b, c, d}) unlink_gone(p);
+  return true;
+}
+
 // Points that took in many others would be asked for all triangles that they ever had.
 void MeshLinks::unlink_gone(std::uint32_t point) {
   std::uint32_t last = none;

@@ -33,6 +33,9 @@ class MeshLinks {
   /// Whether the mesh stays a closed manifold, of at least four triangles, if the edge between two neighbours is
   /// collapsed: the link condition.
   [[nodiscard]] bool stays_manifold(std::uint32_t a, std::uint32_t b);
+  /// Of two points that no edge joins, but two triangles back to back: takes these two out, if the points can then be
+  /// one.
+  bool unfold(std::uint32_t a, std::uint32_t b);
   /// Triangles of `from` become those of `onto`; those of the edge go.
   void collapse(std::uint32_t from, std::uint32_t onto);
   /// Takes what is gone out of the mesh, and ends the use of this.

@@ -18,6 +18,12 @@ Vec3 way_of(const PointNearSurface& from, const Foot& foot) {
   return norm(way) > 0 ? way : foot.gradient;
 }
 
+/// Its height over its longest side.
+double width_of(Vec3 a, Vec3 b, Vec3 c) {
+  const double longest = std::max({norm(b - a), norm(c - b), norm(a - c)});
+  return norm(cross(b - a, c - a)) / (longest * longest);
+}
+
 }  // namespace
 
 struct RefinableMesh::Flip {
@@ -27,8 +33,13 @@ struct RefinableMesh::Flip {
   std::uint32_t c, d;  // the corners that are not on it
 };
 
+bool RefinableMesh::was_halved_at(std::uint32_t point, Ends ends) const {
+  return point < halved_.size() && halved_[point] == Ends{std::min(ends[0], ends[1]), std::max(ends[0], ends[1])};
+}
+
 // The edges that are too far, once each.
 std::vector<RefinableMesh::Flip> RefinableMesh::possible_flips(double tolerance) const {
+  constexpr double narrow = 1e-3;
   std::vector<Edge> far;
   for (std::uint32_t t = 0; t < known_.size(); ++t)
     for (std::uint8_t side = 0; side < 3; ++side) {
@@ -51,7 +62,15 @@ std::vector<RefinableMesh::Flip> RefinableMesh::possible_flips(double tolerance)
         const Vec3 p = gradients_[corners[i]], q = gradients_[corners[j]];
         turns = turns || !(dot(p, q) >= 0.9 * norm(p) * norm(q));
       }
-    if (turns) flips.push_back({one, other.triangle, other.side, c, d});
+    // Of an edge to a vertex that was put on another, the other diagonal may be that one: it would be halved again, and
+    // so on in turn.
+    if (was_halved_at(one.a, {c, d}) || was_halved_at(one.b, {c, d})) continue;
+    const auto width = [&](std::uint32_t p, std::uint32_t q, std::uint32_t r) {
+      return width_of(mesh_.points[p], mesh_.points[q], mesh_.points[r]);
+    };
+    const double before = std::min(width(one.a, one.b, c), width(one.a, one.b, d));
+    const bool stays_wide = std::min(width(one.a, c, d), width(one.b, c, d)) >= std::min(narrow, before);
+    if (turns && stays_wide) flips.push_back({one, other.triangle, other.side, c, d});
   }
   return flips;
 }
@@ -265,6 +284,12 @@ void RefinableMesh::measure_new_points(std::size_t first, std::span<const Vec3> 
   for (std::size_t n = 0; n < which.size(); ++n) distances_[which[n]] = static_cast<float>(distances[n]);
 }
 
+// From side to side of a wall or wedge.
+bool RefinableMesh::goes_through(const Edge& edge) const {
+  const Vec3 a = gradients_[edge.a], b = gradients_[edge.b];
+  return dot(a, b) < -0.5 * norm(a) * norm(b);
+}
+
 // Beside an end of the edge or a corner before it: there, a point would leave another edge that is as far.
 bool RefinableMesh::is_taken(const Cut& cut, Vec3 place) const {
   const Vec3 a = mesh_.points[cut.edge.a], b = mesh_.points[cut.edge.b];
@@ -284,14 +309,17 @@ bool RefinableMesh::is_beside_end(const Cut& cut, Vec3 place) const {
   return std::min(norm(place - a), norm(place - b)) < 0.3 * norm(a - b);
 }
 
-// What is before the mesh, where that is nearer.
+// What is before the mesh, where that is nearer; and where an edge goes through a wall, whose sides are always nearer
+// than its end.
 void RefinableMesh::look_ahead(std::span<const Cut> cuts, std::span<const PointNearSurface> middles, double tolerance,
                                std::span<Foot> feet) {
   std::vector<std::size_t> which;
   std::vector<Ray> rays;
   for (std::size_t i = 0; i < cuts.size(); ++i) {
     if (middles[i].planes != 0) continue;
-    const double length = norm(mesh_.points[cuts[i].edge.a] - mesh_.points[cuts[i].edge.b]);
+    // Where a wall ends may be farther away than it is thick.
+    const double length = std::max(norm(mesh_.points[cuts[i].edge.a] - mesh_.points[cuts[i].edge.b]),
+                                   goes_through(cuts[i].edge) ? 2 * feet_.cell() : 0.0);
     which.push_back(i);
     rays.push_back({middles[i].point, length / norm(middles[i].ahead) * middles[i].ahead});
   }
@@ -299,7 +327,8 @@ void RefinableMesh::look_ahead(std::span<const Cut> cuts, std::span<const PointN
   for (std::size_t n = 0; n < rays.size(); ++n) {
     Foot& foot = feet[which[n]];
     const double ahead = norm(rays[n].from - middles[which[n]].point);
-    if (rays[n].hit && (ahead < foot.distance || is_beside_end(cuts[which[n]], foot.point)))
+    const Cut& cut = cuts[which[n]];
+    if (rays[n].hit && (ahead < foot.distance || is_beside_end(cut, foot.point) || goes_through(cut.edge)))
       foot = {rays[n].from, 0, {}};
   }
 }

@@ -15,7 +15,12 @@ constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
 }  // namespace
 
 RefinableMesh::RefinableMesh(TriangleMesh mesh, const Box3& box, SurfaceFeet& feet, bool smooth)
-    : mesh_(std::move(mesh)), box_(box), feet_(feet), smooth_(smooth), known_(mesh_.triangles.size()) {
+    : mesh_(std::move(mesh)),
+      box_(box),
+      feet_(feet),
+      smooth_(smooth),
+      known_(mesh_.triangles.size()),
+      points_before_(mesh_.points.size()) {
   feet_.slopes(mesh_.points, gradients_, values_);
   for (const Vec3& p : mesh_.points) planes_.push_back(planes_of(box_, p));
   // Points that have triangles in the box's sides only are where they belong. The others are in a cell that the surface
@@ -126,6 +131,8 @@ std::size_t RefinableMesh::refine(double tolerance) {
       normals[halved[t][side]] += normal_of(t);
     }
   const auto first = static_cast<std::uint32_t>(mesh_.points.size());
+  halved_.resize(first, {none, none});
+  for (const Cut& cut : cuts) halved_.push_back({cut.edge.a, cut.edge.b});
   // Grown by doubling, they would hold twice as much.
   mesh_.points.reserve(first + cuts.size());
   planes_.reserve(first + cuts.size());

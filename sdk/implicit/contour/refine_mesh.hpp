@@ -23,6 +23,10 @@ namespace meso::implicit {
 /// What is asked of a point takes more memory than a triangle: so many points at a time.
 inline constexpr std::size_t asked_at_once = 1 << 14;
 
+/// How many triangles one becomes that is so many times as far as it may be: halves are a quarter as far, or a
+/// sixteenth, so most are nearer than is asked in the end.
+[[nodiscard]] inline double parts_for(double times) { return times > 1 ? 1.8 * times : 1; }
+
 /// Triangles of a mesh with what is known of them.
 class RefinableMesh {
  public:
@@ -41,17 +45,35 @@ class RefinableMesh {
   std::size_t refine(double tolerance);
   /// Edges whose distance is more get the other diagonal of their two triangles in their place, where that is near.
   void flip(double tolerance);
+  /// Collapses edges of which nothing is left: of vertices that went to the same corner, one stays. Call measure()
+  /// after.
+  void merge(double tolerance);
   /// Asks at some of the places whose distance was told by normals; true: no more of them was told wrongly than
   /// `tolerance` allows. Else all of them are forgotten, and from now on everything is measured.
   [[nodiscard]] bool normals_were_right(double tolerance);
 
+  /// Marks which of `points` are within `reach` of what is farther than `tolerance`.
+  void mark_around_far(double tolerance, double reach, std::span<const Vec3> points, std::span<char> marks) const;
+
+  /// What is farther.
+  struct Far {
+    std::size_t triangles = 0;
+    Vec3 place;  ///< a corner of the farthest
+  };
+  [[nodiscard]] Far what_is_far(double tolerance) const;
   /// The largest distance that was measured or told.
   [[nodiscard]] double distance() const;
   /// About how many triangles refining to `tolerance` takes.
   [[nodiscard]] double triangles_for(double tolerance) const;
+  /// About how many would do if none were finer than it asks for.
+  [[nodiscard]] double triangles_for_curves(double tolerance) const;
+
+  /// Whether the last refine() came as far as to creases that the mesh cut off.
+  [[nodiscard]] bool found_creases() const { return !missed_.empty(); }
 
   [[nodiscard]] const TriangleMesh& mesh() const { return mesh_; }
-  [[nodiscard]] TriangleMesh take() { return std::move(mesh_); }
+  /// Ends the use of this.
+  [[nodiscard]] TriangleMesh take();
 
   static constexpr std::uint64_t bytes_per_triangle = 160;
 
@@ -77,6 +99,7 @@ class RefinableMesh {
     friend auto operator<=>(const Edge&, const Edge&) = default;  // NOLINT(modernize-use-nullptr): there is no pointer
   };
 
+  using Ends = std::array<std::uint32_t, 2>;
   struct Cut {
     Edge edge;
     float distance;
@@ -99,6 +122,8 @@ class RefinableMesh {
   static constexpr double near_surface = 0.3;
 
   [[nodiscard]] static float farthest(const Known& known);
+  /// Its corners included.
+  [[nodiscard]] double distance_of(std::uint32_t triangle) const;
   [[nodiscard]] Edge edge_of(std::uint32_t triangle, std::size_t side) const;
   static void sort_cuts(std::vector<Cut>& cuts);
   void collect(double tolerance, std::vector<Cut>& cuts, std::vector<std::uint32_t>& bridges) const;
@@ -111,6 +136,8 @@ class RefinableMesh {
   void ask(std::span<const PointNearSurface> points, double tolerance, std::vector<double>& distances);
   // place_points.cpp
   struct Flip;
+  [[nodiscard]] std::vector<Ends> coincident(std::size_t first, double distance) const;
+  [[nodiscard]] bool was_halved_at(std::uint32_t point, Ends ends) const;
   [[nodiscard]] std::vector<Flip> possible_flips(double tolerance) const;
   template <class Points>
   void keep_near(std::vector<Flip>& flips, double tolerance, Points points_of);
@@ -122,6 +149,7 @@ class RefinableMesh {
   void add_points(std::span<const PointNearSurface> from, std::span<Foot> feet, double tolerance);
   void measure_new_points(std::size_t first, std::span<const Vec3> ways, double tolerance);
   [[nodiscard]] bool is_beside_end(const Cut& cut, Vec3 place) const;
+  [[nodiscard]] bool goes_through(const Edge& edge) const;
   [[nodiscard]] bool is_taken(const Cut& cut, Vec3 place) const;
   [[nodiscard]] bool is_poor(const Cut& cut, const Foot& foot) const;
   void look_ahead(std::span<const Cut> cuts, std::span<const PointNearSurface> middles, double tolerance,
@@ -156,6 +184,8 @@ class RefinableMesh {
   std::vector<Vec3> gradients_;   // at points
   std::vector<double> values_;    // at the points of the mesh that was given
   std::vector<Missed> missed_;    // by edge
+  std::size_t points_before_;     // of the mesh that was given
+  std::vector<Ends> halved_;      // the edges that points were put on; of the later points
   std::vector<float> distances_;  // of points, in the planes of the box that they are on
 };
 

@@ -55,8 +55,8 @@ struct Quadric {
 
 class Simplify {
  public:
-  Simplify(TriangleMesh& mesh, const Box3& box, double bound)
-      : points_(mesh.points), triangles_(mesh.triangles), links_(mesh), limit_(bound * bound / 4) {
+  Simplify(TriangleMesh& mesh, const Box3& box, double bound, std::span<const char> kept)
+      : points_(mesh.points), triangles_(mesh.triangles), links_(mesh), limit_(bound * bound / 4), kept_(kept) {
     eye_ = points_.empty() ? Vec3{} : points_[0];
     for (const Vec3& p : points_) planes_.push_back(planes_of(box, p));
   }
@@ -80,6 +80,7 @@ class Simplify {
   std::vector<std::array<std::uint32_t, 3>>& triangles_;
   MeshLinks links_;
   double limit_;
+  std::span<const char> kept_;
   Vec3 eye_;
   std::vector<unsigned> planes_;
   std::vector<Quadric> quadrics_;
@@ -112,6 +113,7 @@ void Simplify::push(std::uint32_t a, std::uint32_t b) {
   Vec3 place;
   double cost = 0;
   if (a > b) std::swap(a, b);
+  if (!kept_.empty() && (kept_[a] != 0 || kept_[b] != 0)) return;
   if (best_place(a, b, place, cost)) queue_.push({cost, a, b, version_[a] + version_[b]});
 }
 
@@ -182,8 +184,9 @@ bool Simplify::run(const RunOptions& run) {
 
 }  // namespace
 
-bool simplify_mesh(TriangleMesh& mesh, const Box3& box, double bound, const RunOptions& run) {
-  return Simplify(mesh, box, bound).run(run);
+bool simplify_mesh(TriangleMesh& mesh, const Box3& box, double bound, const RunOptions& run,
+                   std::span<const char> kept) {
+  return Simplify(mesh, box, bound, kept).run(run);
 }
 
 }  // namespace meso::implicit

@@ -10,12 +10,15 @@
 //
 // About 5 us and 400 bytes a triangle. Thread rule: pure.
 
+#include <span>
+
 #include "meso/base/run_options.hpp"
 #include "meso/base/triangle_mesh.hpp"
 
 namespace meso::implicit {
 
-/// False if stopped by `run`: the mesh is then unfinished.
-[[nodiscard]] bool simplify_mesh(TriangleMesh& mesh, const Box3& box, double bound, const RunOptions& run);
+/// Points marked in `kept` stay, if any are. False if stopped by `run`: the mesh is then unfinished.
+[[nodiscard]] bool simplify_mesh(TriangleMesh& mesh, const Box3& box, double bound, const RunOptions& run,
+                                 std::span<const char> kept = {});
 
 }  // namespace meso::implicit

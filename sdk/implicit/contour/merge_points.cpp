@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: Apache-2.0
+// Vertices that have come to the same place.
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "mesh_links.hpp"
+#include "meso/base/triangle_stream.hpp"
+#include "refine_mesh.hpp"
+
+namespace meso::implicit {
+namespace {
+
+constexpr std::uint32_t gone = std::numeric_limits<std::uint32_t>::max();
+
+/// Its height over its longest side.
+double width_of(const Triangle& t) {
+  const double longest = std::max({norm(t[1] - t[0]), norm(t[2] - t[1]), norm(t[0] - t[2])});
+  return norm(cross(t[1] - t[0], t[2] - t[0])) / (longest * longest);
+}
+
+}  // namespace
+
+// Pairs of points that are no farther apart than that, of those from `first` on.
+std::vector<RefinableMesh::Ends> RefinableMesh::coincident(std::size_t first, double distance) const {
+  std::vector<std::uint32_t> by_x;
+  for (std::size_t p = first; p < mesh_.points.size(); ++p) by_x.push_back(static_cast<std::uint32_t>(p));
+  std::sort(by_x.begin(), by_x.end(), [&](std::uint32_t p, std::uint32_t q) {
+    return std::pair(mesh_.points[p].x, p) < std::pair(mesh_.points[q].x, q);
+  });
+  std::vector<Ends> pairs;
+  for (std::size_t i = 0; i < by_x.size(); ++i)
+    for (std::size_t j = i + 1; j < by_x.size(); ++j) {
+      const Vec3 way = mesh_.points[by_x[j]] - mesh_.points[by_x[i]];
+      if (way.x > distance) break;
+      if (norm(way) <= distance) pairs.push_back({std::min(by_x[i], by_x[j]), std::max(by_x[i], by_x[j])});
+    }
+  return pairs;
+}
+
+// Several edges lead to one corner. What is between their vertices there is triangles of no area, or two triangles back
+// to back; neither is mended by halving.
+void RefinableMesh::merge(double tolerance) {
+  constexpr double nothing = 0.02, apart = 0.05;  // of the tolerance
+  constexpr double narrow = 1e-4;
+  if (smooth_) return;
+  std::vector<Ends> pairs = coincident(points_before_, nothing * tolerance);
+  for (std::uint32_t t = 0; t < mesh_.triangles.size(); ++t)
+    for (std::size_t side = 0; side < 3; ++side) {
+      const Edge edge = edge_of(t, side);
+      if (norm(mesh_.points[edge.a] - mesh_.points[edge.b]) <= nothing * tolerance) pairs.push_back({edge.a, edge.b});
+    }
+  if (pairs.empty()) return;
+  std::sort(pairs.begin(), pairs.end());
+  pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+  MeshLinks links(mesh_);
+  std::vector<std::uint32_t> near;
+  std::vector<char> is_new(mesh_.points.size(), 0);
+  for (const auto& [a, b] : pairs) {
+    if (!links.has_point(a) || !links.has_point(b)) continue;
+    // A point on planes of the box moves onto one that is on them, too.
+    const bool to_a = (planes_[b] & ~planes_[a]) == 0;
+    if (!to_a && (planes_[a] & ~planes_[b]) != 0) continue;
+    const std::uint32_t from = to_a ? b : a, onto = to_a ? a : b;
+    if (norm(mesh_.points[from] - mesh_.points[onto]) > nothing * tolerance) continue;
+    bool stays_wide = true;
+    links.visit_triangles(from, [&](std::uint32_t t) {
+      if (links.is_corner(t, onto)) return;
+      Triangle corners;
+      for (std::size_t i = 0; i < 3; ++i) {
+        const std::uint32_t p = mesh_.triangles[t][i];
+        corners[i] = mesh_.points[p == from ? onto : p];
+      }
+      stays_wide = stays_wide && width_of(corners) > narrow;
+    });
+    if (!stays_wide) continue;
+    if (links.stays_manifold(from, onto) || links.unfold(from, onto)) {
+      links.collapse(from, onto);
+      distances_[onto] = std::max(distances_[onto], distances_[from]);
+      distances_[from] = 0;
+      is_new[onto] = 1;
+    } else {
+      // Where they cannot be one, they must be two in a file of floats, too.
+      links.neighbours(from, near);
+      Vec3 sum;
+      for (const std::uint32_t p : near) sum += mesh_.points[p];
+      const Vec3 way = within(planes_[from], sum / static_cast<double>(near.size()) - mesh_.points[from]);
+      if (!(norm(way) > 0)) continue;
+      mesh_.points[from] += apart * tolerance / norm(way) * way;
+      distances_[from] += static_cast<float>(apart * tolerance);
+      is_new[from] = 1;
+    }
+  }
+  std::size_t kept = 0;
+  for (std::size_t t = 0; t < mesh_.triangles.size(); ++t) {
+    if (mesh_.triangles[t][0] == gone) continue;
+    mesh_.triangles[kept] = mesh_.triangles[t];
+    known_[kept] = known_[t];
+    const auto& c = mesh_.triangles[kept];
+    for (std::size_t side = 0; side < 3; ++side)
+      if (is_new[c[side]] != 0 || is_new[c[(side + 1) % 3]] != 0)
+        known_[kept].edge[side] = known_[kept].middle = unknown;
+    ++kept;
+  }
+  mesh_.triangles.resize(kept);
+  known_.resize(kept);
+}
+
+// Without the points that no triangle has.
+TriangleMesh RefinableMesh::take() {
+  std::vector<std::uint32_t> number(mesh_.points.size(), gone);
+  for (const auto& t : mesh_.triangles)
+    for (const std::uint32_t p : t) number[p] = 0;
+  std::uint32_t kept = 0;
+  for (std::size_t p = 0; p < number.size(); ++p) {
+    if (number[p] == gone) continue;
+    mesh_.points[kept] = mesh_.points[p];
+    number[p] = kept++;
+  }
+  mesh_.points.resize(kept);
+  for (auto& t : mesh_.triangles)
+    for (std::uint32_t& p : t) p = number[p];
+  return std::move(mesh_);
+}
+
+}  // namespace meso::implicit
