@@ -3,6 +3,7 @@
 // point in which two struts touch on their ball.
 #include <cmath>
 #include <numbers>
+#include <vector>
 
 #include "realise_fixture.hpp"
 
@@ -59,6 +60,54 @@ TEST_F(RealiseTouching, ACutCloseToAPointOfContact) {
   EXPECT_EQ(below->way, "lattice");
   EXPECT_TRUE(audit(below->body).clean() && audit(above->body).clean());
   EXPECT_NEAR((measure(below->body).volume + measure(above->body).volume) / measure(whole->body).volume, 1, 1e-7);
+}
+
+/// Cells of 5 mm side by side, with some of the struts of a body-centred one, of 0.5 mm and without balls.
+std::string plain_cells(int count, const std::vector<std::string>& ends) {
+  std::string nodes, beams;
+  for (std::size_t i = 0; i < ends.size(); ++i) {
+    const std::string name = "n" + std::to_string(i);
+    nodes += "<node id=\"" + name + "\" " + ends[i] + "/>";
+    beams += "<beam from=\"c\" to=\"" + name + "\"/>";
+  }
+  return R"(<unitCells><unitCell id="u"><box dx="5" dy="5" dz="5"/><beams radius="0.5"><node id="c" x="2.5" y="2.5" z="2.5"/>)" +
+         nodes + beams +
+         R"(</beams></unitCell></unitCells><patterns><pattern id="c" unitCell="u"><loop index="i" axis="x" spacing="5" count=")" +
+         std::to_string(count) +
+         R"("/><loop index="j" axis="y" spacing="5" count="1"/><loop index="k" axis="z" spacing="5" count="1"/></pattern></patterns>)" +
+         part(R"(<apply pattern="c" operation="intersection"/>)");
+}
+
+// The edge of a hole, 2 mm from its axis, grazes a strut that reaches a fifty-thousandth of a millimetre farther: what
+// is left there is thinner than the tolerance within which edges of neighbouring cells are one.
+TEST_F(RealiseTouching, AnEdgeThatGrazesAStrut) {
+  const std::string cell = plain_cells(1, {R"(x="5" y="5" z="5")"});
+  const std::string slab = R"(<box x="2.6" y="2.6" z="2" dx="1.5" dy="1.5" dz="0.7"/>)",
+                    hole = R"(<cylinder x1="2.3" y1="1.6" z1="-2" x2="2.3" y2="1.6" z2="6" radius="2"/>)";
+  const auto whole = realised(macrostructure(slab) + cell);
+  const auto outside = realised(macrostructure("<difference>" + slab + hole + "</difference>") + cell);
+  const auto inside = realised(macrostructure("<intersection>" + slab + hole + "</intersection>") + cell);
+  ASSERT_TRUE(whole && outside && inside);
+  EXPECT_EQ(outside->way, "lattice");
+  EXPECT_EQ(inside->way, "lattice");
+  EXPECT_TRUE(audit(outside->body).clean() && audit(inside->body).clean());
+  EXPECT_NEAR((measure(outside->body).volume + measure(inside->body).volume) / measure(whole->body).volume, 1, 1e-7);
+}
+
+// A hole touches the plane between two boxes where a strut passes it. What the second box holds beyond the line of
+// contact is thinner than its edges are known; the first way to divide it finds a part of the line.
+TEST_F(RealiseTouching, AHoleTouchesAPlaneBetweenBoxesInAStrut) {
+  const std::string cell = plain_cells(2, {R"(x="0" y="0" z="5")", R"(x="5" y="0" z="5")"});
+  const std::string slab = R"(<box x="4" y="-0.5" z="4.1" dx="2" dy="1.5" dz="0.9"/>)",
+                    hole = R"(<cylinder x1="6.1" y1="0.7" z1="-1" x2="6.1" y2="0.7" z2="13" radius="1.1"/>)";
+  const auto whole = realised(macrostructure(slab) + cell);
+  const auto outside = realised(macrostructure("<difference>" + slab + hole + "</difference>") + cell);
+  const auto inside = realised(macrostructure("<intersection>" + slab + hole + "</intersection>") + cell);
+  ASSERT_TRUE(whole && outside && inside);
+  EXPECT_EQ(outside->way, "lattice");
+  EXPECT_EQ(inside->way, "lattice");
+  EXPECT_TRUE(audit(outside->body).clean() && audit(inside->body).clean());
+  EXPECT_NEAR((measure(outside->body).volume + measure(inside->body).volume) / measure(whole->body).volume, 1, 1e-7);
 }
 
 }  // namespace

@@ -66,6 +66,20 @@ TopoDS_Shape to_solid(const Ball& ball, const CellShape& cell) {
   return BRepPrimAPI_MakeSphere(gp_Ax2(to_pnt(ball.centre), gp::DZ(), seam), ball.radius).Solid();
 }
 
+/// A round end of a strut, no more: other struts hide it but at the rim of the lattice, and where its poles are does
+/// not matter. Turned, it touches the strut in its equator, and OpenCASCADE may intersect what boxes leave of it for
+/// hours.
+bool is_end_of_strut(const Ball& ball, const CellShape& cell) {
+  return std::ranges::any_of(cell.primitives, [&](const CellPrimitive& primitive) {
+    const auto* strut = std::get_if<Frustum>(&primitive);
+    if (strut == nullptr) return false;
+    const auto ends_it = [&](Vec3 end, double radius) {
+      return norm(end - ball.centre) <= cell.tolerance() && std::fabs(radius - ball.radius) <= cell.tolerance();
+    };
+    return ends_it(strut->start, strut->start_radius) || ends_it(strut->end, strut->end_radius);
+  });
+}
+
 /// Lines that a body cuts into a ball are followed only up to a pole beside them. What two walls or three leave of a
 /// ball can do without poles and seam, which go to the other side; where no wall cuts it, a pole is hidden in a strut.
 std::optional<TopoDS_Shape> with_poles_aside(const Ball& ball, const CellShape& cell) {
@@ -265,7 +279,7 @@ std::optional<CellShape> with_poles_aside(const CellShape& cell) {
   bool has_changed = false;
   try {
     for (std::size_t i = 0; i < cell.primitives.size(); ++i)
-      if (const auto* ball = std::get_if<Ball>(&cell.primitives[i]))
+      if (const auto* ball = std::get_if<Ball>(&cell.primitives[i]); ball != nullptr && !is_end_of_strut(*ball, cell))
         if (auto solid = with_poles_aside(*ball, cell)) {
           out.solids[i] = std::move(*solid);
           has_changed = true;

@@ -299,7 +299,8 @@ std::string LatticeMaker::add(const KeptCells& cells, CellKinds& kinds) {
     if (std::string fault = plan.run(kinds, solids_, results_, run_); !fault.empty()) return fault;
     if (run_.should_stop()) return {};
   }
-  if ((added_ || varied_ || out_.crossing > 0) && !align_edges(grid_, cells, kinds, solids_))
+  const auto alike = static_cast<std::uint32_t>(added_ || varied_ ? 0 : kinds.parts().size());
+  if ((added_ || varied_ || out_.crossing > 0) && !align_edges(grid_, cells, alike, kinds, solids_))
     return "the walls of boxes cannot be divided alike";
   if (options_.pieces == PiecesAsked::of_both || options_.pieces == PiecesAsked::of_both_and_no_body)
     out_.joined = std::make_shared<const LatticePieces>(grid_, cells, kinds, solids_);

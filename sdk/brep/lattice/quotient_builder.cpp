@@ -93,20 +93,17 @@ bool Builder::add_kind(const TopoDS_Shape& solid) {
   CellKind& kind = quotient_.kinds.emplace_back();
   Source& source = sources_.emplace_back();
   source.shell = all_faces(solid);
-  matcher_.begin_solid();
   for (TopExp_Explorer lump(solid, TopAbs_SOLID); lump.More(); lump.Next(), ++kind.lumps)
     for (TopExp_Explorer it(lump.Current(), TopAbs_FACE); it.More(); it.Next()) source.face_lumps.push_back(kind.lumps);
   TopExp::MapShapes(source.shell, TopAbs_EDGE, source.edges);
+  source.matches = matcher_.match(source.edges);
   for (int i = 1; i <= source.edges.Extent(); ++i) {
     const TopoDS_Edge& edge = TopoDS::Edge(source.edges(i));
-    const bool degenerate = BRep_Tool::Degenerated(edge);
-    source.matches.push_back(degenerate ? matcher_.add_degenerate(edge) : matcher_.match(edge));
-    const std::uint32_t orbit = source.matches.back().edge;
-    if (boundary_.size() <= orbit) boundary_.resize(orbit + 1);
-    if (!degenerate && on_boundary(edge)) {
-      boundary_[orbit] = true;
-      kind.boundary_edges.push_back({orbit, source.matches.back().offset});
-    }
+    const OrbitMatcher::Match& match = source.matches[static_cast<std::size_t>(i) - 1];
+    if (boundary_.size() <= match.edge) boundary_.resize(match.edge + 1);
+    if (BRep_Tool::Degenerated(edge) || !on_boundary(edge)) continue;
+    boundary_[match.edge] = true;
+    kind.boundary_edges.push_back({match.edge, match.offset});
   }
   std::size_t faces = 0;
   for (TopExp_Explorer it(source.shell, TopAbs_FACE); it.More(); it.Next()) ++faces;

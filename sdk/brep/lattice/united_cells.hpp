@@ -62,10 +62,11 @@ class UnionPlan {
   std::vector<std::uint32_t> task_of_;  ///< by the numbers of the cells; `none`: the body is not there
 };
 
-/// Divides edges on the sides of boxes wherever a box beside has a vertex there: surfaces' seams show in one and not in
-/// the other, and of four boxes at an edge two share no side. What is divided becomes further kinds. False if that
+/// Divides edges on the sides of boxes wherever a box beside has a vertex there: surfaces' seams, and lines in which a
+/// body touches a side, show in one and not in the other, and of four boxes at an edge two share no side. The first
+/// kinds, as many as `alike`, are divided alike among themselves. What is divided becomes further kinds. False if that
 /// fails. May throw Standard_Failure.
-[[nodiscard]] bool align_edges(const CellGrid& grid, const KeptCells& cells, CellKinds& kinds,
+[[nodiscard]] bool align_edges(const CellGrid& grid, const KeptCells& cells, std::uint32_t alike, CellKinds& kinds,
                                std::vector<TopoDS_Shape>& solids);
 
 }  // namespace meso::brep

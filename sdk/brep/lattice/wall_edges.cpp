@@ -125,7 +125,8 @@ std::vector<Index3> neighbours() {
 
 }  // namespace
 
-bool align_edges(const CellGrid& grid, const KeptCells& cells, CellKinds& kinds, std::vector<TopoDS_Shape>& solids) {
+bool align_edges(const CellGrid& grid, const KeptCells& cells, std::uint32_t alike, CellKinds& kinds,
+                 std::vector<TopoDS_Shape>& solids) {
   EdgeAlignment alignment(grid, solids);
   const double tolerance = 20 * grid.tolerance;
   const std::vector<Index3> shifts = neighbours();
@@ -138,7 +139,9 @@ bool align_edges(const CellGrid& grid, const KeptCells& cells, CellKinds& kinds,
     for (const Index3& shift : shifts) {
       const Index3 there{cell[0] + shift[0], cell[1] + shift[1], cell[2] + shift[2]};
       if (cells.number(there) == KeptCells::none) continue;
-      for (const Vec3 p : alignment.missing(own, kinds.of(there, cells), shift))
+      const std::uint32_t other = kinds.of(there, cells);
+      if (own < alike && other < alike) continue;
+      for (const Vec3 p : alignment.missing(own, other, shift))
         if (!has_near(points, p, tolerance)) points.push_back(p);
     }
     if (points.empty()) continue;
