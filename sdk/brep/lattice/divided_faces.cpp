@@ -48,7 +48,7 @@ class EdgesAway {
   [[nodiscard]] bool may_meet(const TopoDS_Edge& edge) const {
     const BRepAdaptor_Curve curve(edge);
     const bool is_line = curve.GetType() == GeomAbs_Line;
-    constexpr int spans = 16;
+    const int spans = is_line ? 16 : 64;
     const auto at = [&](int i) {
       const double share = static_cast<double>(i) / spans;
       return to_vec(curve.Value((1 - share) * curve.FirstParameter() + share * curve.LastParameter()));
@@ -56,8 +56,9 @@ class EdgesAway {
     Vec3 from = at(0);
     for (int i = 1; i <= spans; ++i) {
       const Vec3 to = at(i);
-      // Between two of 17 points of a turn, an ellipse twenty times as long as wide is no farther off than they are.
-      const double by = by_ + BRep_Tool::Tolerance(edge) + (is_line ? 0 : norm(to - from));
+      // Between two of 65 points of a turn, an ellipse twenty times as long as wide is off by a quarter of their
+      // distance.
+      const double by = by_ + BRep_Tool::Tolerance(edge) + (is_line ? 0 : 0.5 * norm(to - from));
       Box3 box;
       box.extend(from);
       box.extend(to);
