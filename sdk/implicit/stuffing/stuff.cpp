@@ -4,6 +4,7 @@
 #include <string>
 
 #include "fill.hpp"
+#include "rims.hpp"
 #include "signs.hpp"
 
 namespace meso::implicit {
@@ -56,6 +57,7 @@ std::optional<TetMesh> stuff(const BccLattice& lattice, const GridSource& corner
   if (!tets) return stopped();
   stuffing::Numbered numbered = number_points(std::move(*tets), points, cuts, moved);
   if (!threads.go_on()) return stopped();
+  stuffing::move_to_rims(numbered, lattice, corners);
   find_boundary(numbered, lattice.box);
   return threads.go_on() ? std::optional(std::move(numbered.mesh)) : stopped();
 }

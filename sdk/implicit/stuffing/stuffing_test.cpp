@@ -57,6 +57,17 @@ double enclosed(const TetMesh& mesh) {
   return six / 6;
 }
 
+/// By side of the box, then the surface.
+std::array<double, TetMesh::side_count> areas(const TetMesh& mesh) {
+  std::array<double, TetMesh::side_count> area{};
+  for (const TetMesh::Face& f : mesh.boundary) {
+    const auto c = mesh.corners(f);
+    area[static_cast<std::size_t>(f.side)] +=
+        norm(cross(mesh.points[c[1]] - mesh.points[c[0]], mesh.points[c[2]] - mesh.points[c[0]])) / 2;
+  }
+  return area;
+}
+
 double least_volume(const TetMesh& mesh) {
   double least = HUGE_VAL;
   for (const auto& t : mesh.tets) {
@@ -98,12 +109,7 @@ TEST(Stuffing, BoxIsFilledToItsEdges) {
   expect_sound(*mesh, 0.13);
   EXPECT_EQ(faulty_edges(*mesh), 0u);
   EXPECT_NEAR(tet_quality(*mesh).volume, 6, 1e-9);
-  std::array<double, TetMesh::side_count> area{};
-  for (const TetMesh::Face& f : mesh->boundary) {
-    const auto c = mesh->corners(f);
-    area[static_cast<std::size_t>(f.side)] +=
-        norm(cross(mesh->points[c[1]] - mesh->points[c[0]], mesh->points[c[2]] - mesh->points[c[0]])) / 2;
-  }
+  const auto area = areas(*mesh);
   const auto near = [](double a) { return testing::DoubleNear(a, 1e-9); };
   EXPECT_THAT(area, ElementsAre(near(3), near(3), near(6), near(6), near(2), near(2), near(0)));
 }
@@ -129,6 +135,39 @@ TEST(Stuffing, GyroidIsClosedManifoldAndHalfTheBox) {
   for (const TetMesh::Face& f : mesh->boundary) {
     if (f.side != TetMesh::Side::surface) continue;
     for (const std::uint32_t p : mesh->corners(f)) EXPECT_LT(field.value(mesh->points[p]), 1e-5);
+  }
+}
+
+/// The share of inside points of a side.
+double section(const Field& field, const Box3& box, std::size_t side) {
+  constexpr int along = 700;
+  const std::size_t axis = side / 2, u = (axis + 1) % 3, v = (axis + 2) % 3;
+  const Vec3 size = box.max - box.min;
+  int count = 0;
+  for (int i = 0; i < along; ++i)
+    for (int j = 0; j < along; ++j) {
+      Vec3 p = side % 2 == 0 ? box.min : box.max;
+      p[u] = box.min[u] + (i + 0.437) / along * size[u];
+      p[v] = box.min[v] + (j + 0.521) / along * size[v];
+      count += field.value(p) < 0 ? 1 : 0;
+    }
+  return size[u] * size[v] * count / along / along;
+}
+
+TEST(Stuffing, FacesOfTheBoxAreTheSolidsSections) {
+  const Field field = gyroid();
+  const Box3 box{{0, 0, 0}, {2, 2, 2}};
+  for (const auto& [spacing, share, of_volume] : {std::array{0.06, 0.025, 1e-3}, std::array{0.03, 0.012, 2e-4}}) {
+    const auto mesh = stuffed(field, box, spacing);
+    ASSERT_TRUE(mesh);
+    expect_sound(*mesh, spacing);
+    EXPECT_EQ(faulty_edges(*mesh), 0u);
+    EXPECT_NEAR(tet_quality(*mesh).volume, 4, 4 * of_volume);
+    const auto area = areas(*mesh);
+    for (std::size_t side = 0; side < 6; ++side) {
+      const double whole = section(field, box, side);
+      EXPECT_NEAR(area[side], whole, share * whole) << side;
+    }
   }
 }
 

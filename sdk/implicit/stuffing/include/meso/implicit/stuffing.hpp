@@ -10,8 +10,9 @@
 // F. Labelle and J. R. Shewchuk, Isosurface Stuffing: Fast Tetrahedral Meshes with Good Dihedral Angles, SIGGRAPH 2007.
 // Uniform elements on a body-centred cubic lattice of spacing h, 12 to a cube of h^3. Points of the lattice that the
 // surface passes closely move onto it; it cuts the other edges; what is left is one of few stencils. Points of the
-// boundary lie on the surface to 1e-6 h, and exactly in the box's planes where the solid reaches them. Edges of the
-// solid are cut off by up to h, and what is thinner than h may be lost.
+// boundary lie on the surface to 1e-6 h, and exactly in the box's planes where the solid reaches them. Where the
+// surface meets these, points are moved onto the rim as far as angles stay within 14 and 160 degrees; a few stay
+// inside. Other edges of the solid are cut off by up to h, and what is thinner than h may be lost.
 //
 // Equal meshes for any number of threads. Memory: about 30 bytes for each point of the lattice, 100 for each
 // tetrahedron. Errors: LIMIT_GRID_MEMORY, LIMIT_TIME, CANCELLED. A mesh without tetrahedra is a result.

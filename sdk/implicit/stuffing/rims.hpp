@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// Where the surface meets the box: the lattice cuts off the rim there, by up to a cell. Private.
+
+#include "fill.hpp"
+
+namespace meso::implicit::stuffing {
+
+/// Moves points of the boundary onto the rim, as far as all tetrahedra keep the bounds of their angles. Call before
+/// find_boundary().
+void move_to_rims(Numbered& numbered, const BccLattice& lattice, const GridSource& source);
+
+}  // namespace meso::implicit::stuffing
