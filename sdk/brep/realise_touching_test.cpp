@@ -78,6 +78,14 @@ std::string plain_cells(int count, const std::vector<std::string>& ends) {
          part(R"(<apply pattern="c" operation="intersection"/>)");
 }
 
+bool is_triangulated(const Body& body) {
+  bool all = !body.solids.empty();
+  for (const Solid& solid : body.solids)
+    solid.outer.visit(
+        [&](const FaceInstance& face) { all = all && !solid.outer.geometry->faces[face.face].mesh.triangles.empty(); });
+  return all;
+}
+
 // The edge of a hole, 2 mm from its axis, grazes a strut that reaches a fifty-thousandth of a millimetre farther: what
 // is left there is thinner than the tolerance within which edges of neighbouring cells are one.
 TEST_F(RealiseTouching, AnEdgeThatGrazesAStrut) {
@@ -85,11 +93,12 @@ TEST_F(RealiseTouching, AnEdgeThatGrazesAStrut) {
   const std::string slab = R"(<box x="2.6" y="2.6" z="2" dx="1.5" dy="1.5" dz="0.7"/>)",
                     hole = R"(<cylinder x1="2.3" y1="1.6" z1="-2" x2="2.3" y2="1.6" z2="6" radius="2"/>)";
   const auto whole = realised(macrostructure(slab) + cell);
-  const auto outside = realised(macrostructure("<difference>" + slab + hole + "</difference>") + cell);
+  const auto outside = realised(macrostructure("<difference>" + slab + hole + "</difference>") + cell, {.mesh = true});
   const auto inside = realised(macrostructure("<intersection>" + slab + hole + "</intersection>") + cell);
   ASSERT_TRUE(whole && outside && inside);
   EXPECT_EQ(outside->way, "lattice");
   EXPECT_EQ(inside->way, "lattice");
+  EXPECT_TRUE(is_triangulated(outside->body));
   EXPECT_TRUE(audit(outside->body).clean() && audit(inside->body).clean());
   EXPECT_NEAR((measure(outside->body).volume + measure(inside->body).volume) / measure(whole->body).volume, 1, 1e-7);
 }

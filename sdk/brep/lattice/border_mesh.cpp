@@ -53,21 +53,28 @@ Loops loops_of(const TopoDS_Face& face, const TemplateEdges& kind, const Templat
 
 Vec3 place_of(const MeshPoint& p, const Template& geometry) { return p.point + cell_origin(geometry, p.offset); }
 
-/// Where the edges run in a plane, to a millionth of the cell, it is as good as the surface.
-std::optional<Triangulation> flat_mesh(const std::vector<MeshPoint>& border, const Template& geometry) {
+/// Where the edges run in a plane, to a millionth of the cell, it is as good as the surface. A face narrower than ten
+/// of those may be bent more, if much less than triangles may be off.
+std::optional<Triangulation> flat_mesh(const std::vector<MeshPoint>& border, const Template& geometry,
+                                       const MeshFineness& fineness) {
   Triangulation out{.points = border, .triangles = {}};
   std::vector<Vec3> places;
   Vec3 middle{}, normal{};
   for (const MeshPoint& p : out.points) middle += places.emplace_back(place_of(p, geometry));
   middle = middle / static_cast<double>(places.size());
-  for (std::size_t i = 0; i < places.size(); ++i)
-    normal += cross(places[i] - middle, places[(i + 1) % places.size()] - middle);
+  double around = 0;
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    const Vec3 next = places[(i + 1) % places.size()];
+    normal += cross(places[i] - middle, next - middle);
+    around += norm(next - places[i]);
+  }
   if (norm(normal) == 0) return {};
+  const double millionth = 1e-6 * std::cbrt(std::fabs(determinant(geometry.lattice))), width = norm(normal) / around;
+  const double allowed = width < 10 * millionth ? std::fmax(millionth, fineness.deflection / 100) : millionth;
   normal = normal / norm(normal);
   const Vec3 x = (places[0] - middle) / norm(places[0] - middle), y = cross(normal, x);
   std::vector<PlanePoint> flat;
   std::vector<std::uint32_t> loop;
-  const double allowed = 1e-6 * std::cbrt(std::fabs(determinant(geometry.lattice)));
   for (const Vec3 p : places) {
     if (std::fabs(dot(p - middle, normal)) > allowed) return {};
     loop.push_back(static_cast<std::uint32_t>(flat.size()));
@@ -104,7 +111,7 @@ std::optional<Triangulation> border_mesh(const TopoDS_Face& face, const Template
   const Loops loops = loops_of(face, kind, geometry, polygons);
   if (loops.empty()) return {};
   if (loops.size() == 1)
-    if (auto mesh = flat_mesh(loops.front(), geometry)) return mesh;
+    if (auto mesh = flat_mesh(loops.front(), geometry, fineness)) return mesh;
   const BRepAdaptor_Surface surface(face, false);
   if (surface.GetType() != GeomAbs_Sphere || face.Orientation() == TopAbs_REVERSED) return {};
   const gp_Sphere sphere = surface.Sphere();
