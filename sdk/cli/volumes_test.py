@@ -7,6 +7,7 @@ usage: volumes_test.py MESO
 Each is asked where it is installed.
 """
 
+import math
 import pathlib
 import re
 import shutil
@@ -67,6 +68,35 @@ class Volumes(unittest.TestCase):
                 self.assertEqual("SDF_COARSE" in done.stderr, is_coarse, done.stderr)
 
     @unittest.skipUnless(HAS_VTK, "VTK is not installed")
+    def test_sides_of_a_document_are_its_sections(self):
+        """Of a gyroid's cells, each face of the box cuts one half; loads stand on sets of that name."""
+        axes = "".join(f'<loop index="{i}" axis="{a}" count="2" spacing="5mm"/>' for i, a in zip("ijk", "xyz"))
+        (self.folder / "block.meso").write_text(f"""<meso xmlns="urn:meso-format:1.0" version="1.0" unit="millimeter">
+  <unitCells><unitCell id="g"><box dx="5mm" dy="5mm" dz="5mm"/><implicit surface="gyroid" density="0.5"/></unitCell></unitCells>
+  <patterns><pattern id="p" unitCell="g">{axes}</pattern></patterns>
+  <parts><part id="block"><apply pattern="p" operation="union"/></part></parts>
+</meso>""", encoding="utf-8")
+        subprocess.run([MESO, "convert", "block.meso", "block.inp", "--elements", "2.5e5"], cwd=self.folder, check=True, capture_output=True)
+        nodes, elements, areas, reading = {}, {}, {}, None
+        for line in (self.folder / "block.inp").read_text().splitlines():
+            cells = line.split(",")
+            if line.startswith("*"):
+                reading = cells[0]
+                if reading == "*SURFACE":
+                    side = cells[1].split("=")[1]
+                    areas[side] = 0
+            elif reading == "*NODE":
+                nodes[cells[0]] = [float(x) for x in cells[1:4]]
+            elif reading == "*ELEMENT":
+                elements[cells[0]] = cells[1:5]
+            elif reading == "*SURFACE":
+                corners = {"S1": (0, 1, 2), "S2": (0, 1, 3), "S3": (1, 2, 3), "S4": (0, 2, 3)}[cells[1].strip()]
+                a, b, c = (nodes[elements[cells[0]][i].strip()] for i in corners)
+                u, v = ([q - o for q, o in zip(end, a)] for end in (b, c))
+                areas[side] += math.hypot(u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]) / 2
+        for side in ("X_MIN", "X_MAX", "Y_MIN", "Y_MAX", "Z_MIN", "Z_MAX"):
+            self.assertAlmostEqual(areas["S_" + side], 50, delta=0.03 * 50, msg=side)
+
     def test_vtk_reads_tetrahedra(self):
         binary = self.read(READ_VTK, self.make("a.vtu", "--elements", "5000"))
         text = self.read(READ_VTK, self.make("b.vtu", "--elements", "5000", "--ascii"))

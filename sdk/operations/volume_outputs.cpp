@@ -32,12 +32,34 @@ struct SizedMesh {
   TetMesh mesh;
 };
 
+/// Of a part that fills its box, the box's sides are where the field is zero, which is not inside. A little within,
+/// they are cuts through the part.
+Box3 a_little_within(const Box3& box) {
+  constexpr double little = 1e-9;
+  Box3 result = box;
+  for (std::size_t a = 0; a < 3; ++a) {
+    result.min[a] += little * (box.max[a] - box.min[a]);
+    result.max[a] -= little * (box.max[a] - box.min[a]);
+  }
+  return result;
+}
+
+void move_sides(TetMesh& mesh, const Box3& from, const Box3& to) {
+  for (Vec3& p : mesh.points)
+    for (std::size_t a = 0; a < 3; ++a) {
+      if (p[a] == from.min[a]) p[a] = to.min[a];
+      if (p[a] == from.max[a]) p[a] = to.max[a];
+    }
+}
+
 std::optional<SizedMesh> mesh_at(double spacing, const VolumeJob& job, const RunOptions& run) {
-  const implicit::BccLattice lattice = implicit::bcc_lattice(job.box, spacing);
+  const bool is_document = job.words == nullptr;
+  const implicit::BccLattice lattice = implicit::bcc_lattice(is_document ? a_little_within(job.box) : job.box, spacing);
   const auto corners = job.source(job.field, lattice.corners), centres = job.source(job.field, lattice.centres);
   if (!corners || !centres) return std::nullopt;
   auto mesh = implicit::stuff(lattice, *corners, *centres, run, job.sink);
   if (!mesh) return std::nullopt;
+  move_sides(*mesh, lattice.box, job.box);
   return SizedMesh{lattice, std::move(*mesh)};
 }
 

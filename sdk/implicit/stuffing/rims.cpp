@@ -96,6 +96,23 @@ class Rims {
     return result;
   }
 
+  /// Between the directions within the planes in which the field changes its sign first; 0: it does not.
+  Vec3 way_to_rim(Vec3 p, unsigned planes, double reach, bool inside) {
+    constexpr int steps = 6;
+    for (int i = 1; i <= steps; ++i) {
+      Vec3 sum;
+      for (int n = 0; n < 125; ++n) {
+        const Vec3 all{n % 5 - 2.0, n / 5 % 5 - 2.0, n / 25 - 2.0}, way = within(planes, all);
+        const double longest = std::max({std::abs(way.x), std::abs(way.y), std::abs(way.z)});
+        if (longest < 2 || norm(all - way) > 0) continue;
+        const Vec3 q = p + reach * i / steps / norm(way) * way;
+        if (lattice_.box.intersects({q, q}) && (value(q) < 0) != inside) sum += way / norm(way);
+      }
+      if (norm(sum) > 0) return sum / norm(sum);
+    }
+    return {};
+  }
+
   /// Where the surface is, from p within the planes; at most so far.
   bool find_rim(Vec3 p, unsigned planes, double reach, Vec3& rim) {
     constexpr int steps = 6, most_steps = 40;
@@ -109,8 +126,11 @@ class Rims {
       slope[a] = (value(beside) - here) / (beside[a] - p[a]);
     }
     slope = within(planes, slope);
-    if (!(norm(slope) > 0) || !std::isfinite(norm(slope)) || !std::isfinite(here)) return false;
-    const Vec3 way = (here < 0 ? 1 : -1) / norm(slope) * slope;
+    if (!std::isfinite(norm(slope)) || !std::isfinite(here)) return false;
+    // Of a part that fills the box, the field near the box's sides is that of the sides, and only its sign tells.
+    const bool is_flat = !(norm(slope) > 0);
+    const Vec3 way = is_flat ? way_to_rim(p, planes, reach, here < 0) : (here < 0 ? 1 : -1) / norm(slope) * slope;
+    if (norm(way) == 0) return false;
     const auto at = [&](double t) {
       Vec3 q = p + t * way;
       for (std::size_t a = 0; a < 3; ++a) q[a] = std::clamp(q[a], lattice_.box.min[a], lattice_.box.max[a]);
@@ -127,7 +147,8 @@ class Rims {
     // Regula falsi that halves the value of an end that stays (Illinois); bisection where values are none.
     for (int i = 0, stayed = 0; i < most_steps && high - low > accuracy * lattice_.spacing; ++i) {
       const double share = at_low / (at_low - at_high);
-      const double next = low + (high - low) * (std::isfinite(share) ? std::clamp(share, 0.001, 0.999) : 0.5);
+      const double next =
+          low + (high - low) * (!is_flat && std::isfinite(share) ? std::clamp(share, 0.001, 0.999) : 0.5);
       const double there = value(at(next));
       if ((there < 0) != (here < 0)) {
         high = next, at_high = there;
