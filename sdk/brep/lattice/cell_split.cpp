@@ -8,6 +8,7 @@
 
 #include "boolean.hpp"
 #include "face_moments.hpp"
+#include "lattice/sliver_faces.hpp"
 #include "lattice/union_find.hpp"
 #include "meso/base/number.hpp"
 
@@ -76,6 +77,7 @@ class CellSplit {
   const char* place_caps();
   [[nodiscard]] int side_of_cell(Vec3 p);
   const char* check_sums();
+  const char* take_slivers_out();
   void take();
   [[nodiscard]] bool is_changed() const;
   [[nodiscard]] const char* join_taken(UnionFind& joined) const;
@@ -306,13 +308,28 @@ const char* CellSplit::check_sums() {
   for (const auto& [p, reversed] : taken_) {
     const bool whole = is_whole(p);
     area += (reversed ? -1.0 : 1.0) * (whole ? cell_.faces[faces_.pieces[p].of].area : moments(p).vector_area);
-    if (whole) continue;
-    // Where a cusp between two circles is cut off near its end, what is left is narrow, and well known.
-    const TopoDS_Face& face = faces_.pieces[p].face;
-    if (moments(p).area <= 2 * tiny * options_.size * extent_of(face) && moments(p).area <= 2 * doubt_of(face))
-      return "a piece of a face has no width";
   }
   if (norm(area) > open_area * options_.size * options_.size) return "the faces of a piece of a cell do not close";
+  return take_slivers_out();
+}
+
+/// Where a cusp between two circles is cut off near its end, what is left is narrow, and well known; or nothing.
+const char* CellSplit::take_slivers_out() {
+  std::vector<bool> is_taken(faces_.pieces.size());
+  for (const Taken& taken : taken_) is_taken[taken.piece] = true;
+  for (const Taken& taken : taken_) {
+    const std::uint32_t p = taken.piece;
+    if (is_whole(p)) continue;
+    const TopoDS_Face face = faces_.pieces[p].face;
+    if (moments(p).area > 2 * tiny * options_.size * extent_of(face) || moments(p).area > 2 * doubt_of(face)) continue;
+    const auto sliver = sliver_of(
+        faces_, p, tiny * options_.size, [&](std::uint32_t q) { return is_taken[q]; },
+        [&](std::uint32_t q) { return role(q) != WholeCell::Role::skin; });
+    if (!sliver) return "a piece of a face has no width";
+    take_out(faces_, *sliver);
+    is_taken[p] = false;
+  }
+  std::erase_if(taken_, [&](const Taken& taken) { return !is_taken[taken.piece]; });
   return nullptr;
 }
 

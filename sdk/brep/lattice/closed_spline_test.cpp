@@ -115,10 +115,9 @@ int edges_along_the_seam(const TopoDS_Shape& solid) {
   return count;
 }
 
-/// The cell at that place of a lattice that starts at (-16.3, -15.7, -0.7), cut by the loft at the first attempt, has
+/// The cell with that corner, cut by the loft at the first attempt, has
 /// the volume that counting says. Off the loft's other edges its seam does not show.
-void expect_cut(const Index3& place, double ball, bool is_off_edges) {
-  const Vec3 origin{-16.3 + 4 * place[0], -15.7 + 4 * place[1], -0.7 + 4 * place[2]};
+void expect_cut(Vec3 origin, double ball, bool is_off_edges) {
   const TopoDS_Shape body = loft();
   DiagnosticSink sink;
   const auto cell = cell_shape(bcc_at(origin, ball), sink);
@@ -158,9 +157,10 @@ void expect_cut(const Index3& place, double ball, bool is_off_edges) {
 
 const double touching = 0.4 / std::sin(0.5 * std::acos(1.0 / 3));  ///< nodeRadius="auto"
 
-TEST(ClosedSpline, CutFourMicrometresFromATip) { expect_cut({6, 3, 6}, touching, false); }
-TEST(ClosedSpline, CurveThatCrossesTheSeam) { expect_cut({6, 3, 3}, 0, true); }
-TEST(ClosedSpline, CurveThatIsLessKnownThanItSays) { expect_cut({1, 4, 6}, 0, false); }
+TEST(ClosedSpline, CutFourMicrometresFromATip) { expect_cut({7.7, -3.7, 23.3}, touching, false); }
+TEST(ClosedSpline, CutAQuarterOfAMicrometreFromATip) { expect_cut({4.83, 5.17, 7.5}, touching, true); }
+TEST(ClosedSpline, CurveThatCrossesTheSeam) { expect_cut({7.7, -3.7, 11.3}, 0, true); }
+TEST(ClosedSpline, CurveThatIsLessKnownThanItSays) { expect_cut({-12.3, 0.3, 23.3}, 0, false); }
 
 /// Both are the same surface; the seam of the second is opposite `at`.
 void expect_same(const Geom_BSplineSurface& known, const Geom_BSplineSurface& turned, double at) {

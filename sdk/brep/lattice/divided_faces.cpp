@@ -262,6 +262,11 @@ void FaceDivision::fit() {
   fit_sections(sections, divided, options_.size);
 }
 
+bool on_same_surface(const TopoDS_Face& a, const TopoDS_Face& b) {
+  TopLoc_Location of_a, of_b;
+  return BRep_Tool::Surface(a, of_a) == BRep_Tool::Surface(b, of_b) && of_a == of_b;
+}
+
 }  // namespace
 
 std::vector<TopoDS_Face> pieces_of(BOPAlgo_Builder& builder, const TopoDS_Face& face,
@@ -272,12 +277,12 @@ std::vector<TopoDS_Face> pieces_of(BOPAlgo_Builder& builder, const TopoDS_Face& 
   for (const TopoDS_Shape& image : images) {
     const TopoDS_Shape* same = builder.ShapesSD().Seek(image);
     TopoDS_Face piece = TopoDS::Face(same != nullptr ? *same : image);
-    if (!piece.IsSame(face)) {
+    if (on_same_surface(piece, face)) {
+      piece.Orientation(face.Orientation());
+    } else {
       Standard_Integer error = 0;
       if (BOPTools_AlgoTools::IsSplitToReverse(piece, face, context, &error)) piece.Reverse();
       if (error != 0) throw Standard_Failure("a piece of a face looks both ways");
-    } else {
-      piece = face;
     }
     out.push_back(piece);
   }
