@@ -10,7 +10,7 @@ import sys
 
 import vtk
 
-CELLS = {4: vtk.VTK_TETRA, 8: vtk.VTK_HEXAHEDRON}
+CELLS = {4: vtk.VTK_TETRA, 8: vtk.VTK_HEXAHEDRON, 10: vtk.VTK_QUADRATIC_TETRA}
 
 
 def block(job):

@@ -4,7 +4,7 @@
     nodes, elements = held_together(*read_tets("block.inp"), lower=0, upper=10)
     force, farthest = press(nodes, elements, lower=0, upper=10, by=0.1, folder=".", name="pressed")
 
-nodes: {number: (x, y, z)}; elements: tuples of 4 or 8 numbers. Millimetres and newtons. Needs nothing but Python.
+nodes: {number: (x, y, z)}; elements: tuples of 4, 8 or 10 numbers. Millimetres and newtons. Needs nothing but Python.
 """
 
 import pathlib
@@ -26,6 +26,21 @@ def read_tets(path):
         elif into == "elements":
             elements.append(tuple(map(int, line.split(",")[1:])))
     return nodes, elements
+
+
+def quadratic(nodes, elements):
+    """Tetrahedra of ten nodes: those of four are much too stiff in bending. The six are in the middles of the edges."""
+    nodes, middles, last = dict(nodes), {}, max(nodes)
+
+    def between(a, b):
+        key = (min(a, b), max(a, b))
+        if key not in middles:
+            middles[key] = last + 1 + len(middles)
+            nodes[middles[key]] = tuple((p + q) / 2 for p, q in zip(nodes[a], nodes[b]))
+        return middles[key]
+
+    edges = ((0, 1), (1, 2), (2, 0), (0, 3), (1, 3), (2, 3))
+    return nodes, [(*e, *(between(e[i], e[j]) for i, j in edges)) for e in elements]
 
 
 def held_together(nodes, elements, lower, upper):
@@ -54,7 +69,7 @@ def press(nodes, elements, lower, upper, by, folder, name, ccx="ccx"):
     Returns the force, and how far the point that moved farthest did.
     """
     folder = pathlib.Path(folder)
-    kind = "C3D4" if len(elements[0]) == 4 else "C3D8"
+    kind = f"C3D{len(elements[0])}"
     lines = ["*NODE, NSET=ALL"]
     # CalculiX takes 20 characters of a number.
     lines += [f"{n},{x:.13g},{y:.13g},{z:.13g}" for n, (x, y, z) in sorted(nodes.items())]
@@ -95,7 +110,7 @@ def volume(nodes, elements):
         return len(elements) * abs(y - x) ** 3
     total = 0
     for element in elements:
-        o, a, b, c = (nodes[n] for n in element)
+        o, a, b, c = (nodes[n] for n in element[:4])
         u, v, w = ([p[i] - o[i] for i in range(3)] for p in (a, b, c))
         total += (u[0] * (v[1] * w[2] - v[2] * w[1]) + u[1] * (v[2] * w[0] - v[0] * w[2]) + u[2] * (v[0] * w[1] - v[1] * w[0])) / 6
     return total
