@@ -67,7 +67,6 @@ class Volumes(unittest.TestCase):
                 self.assertTrue(asked / 1.4 < made < 1.4 * asked, made)
                 self.assertEqual("SDF_COARSE" in done.stderr, is_coarse, done.stderr)
 
-    @unittest.skipUnless(HAS_VTK, "VTK is not installed")
     def test_sides_of_a_document_are_its_sections(self):
         """Of a gyroid's cells, each face of the box cuts one half; loads stand on sets of that name."""
         axes = "".join(f'<loop index="{i}" axis="{a}" count="2" spacing="5mm"/>' for i, a in zip("ijk", "xyz"))
@@ -97,6 +96,7 @@ class Volumes(unittest.TestCase):
         for side in ("X_MIN", "X_MAX", "Y_MIN", "Y_MAX", "Z_MIN", "Z_MAX"):
             self.assertAlmostEqual(areas["S_" + side], 50, delta=0.03 * 50, msg=side)
 
+    @unittest.skipUnless(HAS_VTK, "VTK is not installed")
     def test_vtk_reads_tetrahedra(self):
         binary = self.read(READ_VTK, self.make("a.vtu", "--elements", "5000"))
         text = self.read(READ_VTK, self.make("b.vtu", "--elements", "5000", "--ascii"))

@@ -66,7 +66,8 @@ class CellSplit {
     // What a face is cut along goes round or from border to border: the rest of it was not found.
     if (faces_.loose) return {.fault = "a face is cut along a part of a line"};
     join_sets();
-    for (const auto step : {&CellSplit::place_cell_pieces, &CellSplit::place_caps, &CellSplit::check_sums})
+    for (const auto step :
+         {&CellSplit::place_cell_pieces, &CellSplit::place_caps, &CellSplit::check_sums, &CellSplit::take_slivers_out})
       if (const char* fault = (this->*step)()) return {.fault = fault};
     return result();
   }
@@ -310,10 +311,11 @@ const char* CellSplit::check_sums() {
     area += (reversed ? -1.0 : 1.0) * (whole ? cell_.faces[faces_.pieces[p].of].area : moments(p).vector_area);
   }
   if (norm(area) > open_area * options_.size * options_.size) return "the faces of a piece of a cell do not close";
-  return take_slivers_out();
+  return nullptr;
 }
 
-/// Where a cusp between two circles is cut off near its end, what is left is narrow, and well known; or nothing.
+/// A piece without width, as where a cusp between two circles is cut off at its very tip, goes if it lies between two
+/// edges that have the same ends; otherwise it is a fault. What is narrow, and better known than wide, stays.
 const char* CellSplit::take_slivers_out() {
   std::vector<bool> is_taken(faces_.pieces.size());
   for (const Taken& taken : taken_) is_taken[taken.piece] = true;

@@ -120,10 +120,13 @@ std::optional<Vec3> meet(Foot& a, Foot& b, Vec3 p, double eps) {
 std::optional<FittedCurve> fit_curve(const SharedCurve& on, Vec3 start, Vec3 end, double size) {
   std::optional<FittedCurve> best;
   for (const int count : counts) {
-    auto fitted = fit(on, start, end, count, size);
-    if (!fitted) break;
-    if (!best || fitted->off < best->off) best = std::move(fitted);
-    if (best->off <= curve_aim * size) break;
+    try {
+      auto fitted = fit(on, start, end, count, size);
+      if (!fitted) continue;  // too few points to follow a sharp turn
+      if (!best || fitted->off < best->off) best = std::move(fitted);
+    } catch (const Standard_Failure&) {
+    }
+    if (best && best->off <= curve_aim * size) break;
   }
   return best;
 }

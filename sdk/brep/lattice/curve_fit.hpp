@@ -65,8 +65,7 @@ struct FittedCurve {
   double off = 0;  ///< from the surfaces at most
 };
 
-/// From `start` to `end`, which are on both; of the cell's `size`. Empty where the surfaces nearly touch. May throw
-/// Standard_Failure.
+/// From `start` to `end`, which are on both; of the cell's `size`. Empty where the surfaces nearly touch.
 [[nodiscard]] std::optional<FittedCurve> fit_curve(const SharedCurve& on, Vec3 start, Vec3 end, double size);
 
 }  // namespace meso::brep

@@ -421,12 +421,16 @@ void RefinableMesh::mark_around_far(double tolerance, double reach, std::span<co
     for (std::size_t axis = 0; axis < 3; ++axis) box.min[axis] -= reach, box.max[axis] += reach;
     far.push_back(box);
   }
-  for (std::size_t i = 0; i < points.size(); ++i)
-    for (const Box3& box : far)
-      if (box.intersects({points[i], points[i]})) {
-        marks[i] = 1;
-        break;
-      }
+  std::sort(far.begin(), far.end(), [](const Box3& a, const Box3& b) { return a.min.x < b.min.x; });
+  double widest = 0;
+  for (const Box3& box : far) widest = std::max(widest, box.max.x - box.min.x);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const double x = points[i].x;
+    auto box =
+        std::lower_bound(far.begin(), far.end(), x - widest, [](const Box3& b, double at) { return b.min.x < at; });
+    for (; box != far.end() && box->min.x <= x && marks[i] == 0; ++box)
+      if (box->intersects({points[i], points[i]})) marks[i] = 1;
+  }
 }
 
 // By edges: of small triangles' middles, only what they are at most is known.

@@ -25,17 +25,17 @@ double width_of(const Triangle& t) {
 
 // Pairs of points that are no farther apart than that, of those from `first` on.
 std::vector<RefinableMesh::Ends> RefinableMesh::coincident(std::size_t first, double distance) const {
-  std::vector<std::uint32_t> by_x;
-  for (std::size_t p = first; p < mesh_.points.size(); ++p) by_x.push_back(static_cast<std::uint32_t>(p));
-  std::sort(by_x.begin(), by_x.end(), [&](std::uint32_t p, std::uint32_t q) {
-    return std::pair(mesh_.points[p].x, p) < std::pair(mesh_.points[q].x, q);
-  });
+  // Along a direction that no usual plane is square to: of a plane's points all would be alike.
+  constexpr Vec3 direction{0.48, 0.60, 0.64};
+  std::vector<std::pair<double, std::uint32_t>> along;
+  for (std::size_t p = first; p < mesh_.points.size(); ++p)
+    along.emplace_back(dot(direction, mesh_.points[p]), static_cast<std::uint32_t>(p));
+  std::sort(along.begin(), along.end());
   std::vector<Ends> pairs;
-  for (std::size_t i = 0; i < by_x.size(); ++i)
-    for (std::size_t j = i + 1; j < by_x.size(); ++j) {
-      const Vec3 way = mesh_.points[by_x[j]] - mesh_.points[by_x[i]];
-      if (way.x > distance) break;
-      if (norm(way) <= distance) pairs.push_back({std::min(by_x[i], by_x[j]), std::max(by_x[i], by_x[j])});
+  for (std::size_t i = 0; i < along.size(); ++i)
+    for (std::size_t j = i + 1; j < along.size() && along[j].first - along[i].first <= distance; ++j) {
+      const auto [a, b] = std::minmax(along[i].second, along[j].second);
+      if (norm(mesh_.points[a] - mesh_.points[b]) <= distance) pairs.push_back({a, b});
     }
   return pairs;
 }

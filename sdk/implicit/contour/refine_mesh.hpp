@@ -134,9 +134,10 @@ class RefinableMesh {
   void measure_within(std::span<const std::uint32_t> triangles, double tolerance);
   [[nodiscard]] double tangents_leave(std::uint32_t a, std::uint32_t b) const;
   void ask(std::span<const PointNearSurface> points, double tolerance, std::vector<double>& distances);
+  // merge_points.cpp
+  [[nodiscard]] std::vector<Ends> coincident(std::size_t first, double distance) const;
   // place_points.cpp
   struct Flip;
-  [[nodiscard]] std::vector<Ends> coincident(std::size_t first, double distance) const;
   [[nodiscard]] bool was_halved_at(std::uint32_t point, Ends ends) const;
   [[nodiscard]] std::vector<Flip> possible_flips(double tolerance) const;
   template <class Points>

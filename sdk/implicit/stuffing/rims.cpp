@@ -115,7 +115,7 @@ class Rims {
 
   /// Where the surface is, from p within the planes; at most so far.
   bool find_rim(Vec3 p, unsigned planes, double reach, Vec3& rim) {
-    constexpr int steps = 6, most_steps = 40;
+    constexpr int steps = 6;
     constexpr double accuracy = 1e-6;
     const double step = 1e-4 * lattice_.spacing, here = value(p);
     Vec3 slope;
@@ -136,29 +136,17 @@ class Rims {
       for (std::size_t a = 0; a < 3; ++a) q[a] = std::clamp(q[a], lattice_.box.min[a], lattice_.box.max[a]);
       return q;
     };
-    double low = 0, high = 0, at_low = here, at_high = here;
+    double low = 0, high = 0;
     for (int i = 1; i <= steps; ++i) {
       high = reach * i / steps;
-      at_high = value(at(high));
-      if ((at_high < 0) != (here < 0)) break;
-      low = high, at_low = at_high;
+      if ((value(at(high)) < 0) != (here < 0)) break;
+      low = high;
       if (i == steps) return false;
     }
-    // Regula falsi that halves the value of an end that stays (Illinois); bisection where values are none.
-    for (int i = 0, stayed = 0; i < most_steps && high - low > accuracy * lattice_.spacing; ++i) {
-      const double share = at_low / (at_low - at_high);
-      const double next =
-          low + (high - low) * (!is_flat && std::isfinite(share) ? std::clamp(share, 0.001, 0.999) : 0.5);
-      const double there = value(at(next));
-      if ((there < 0) != (here < 0)) {
-        high = next, at_high = there;
-        if (stayed == -1) at_low /= 2;
-        stayed = -1;
-      } else {
-        low = next, at_low = there;
-        if (stayed == 1) at_high /= 2;
-        stayed = 1;
-      }
+    // By signs alone: near the sides of a part that fills the box, values are those of the sides.
+    while (high - low > accuracy * lattice_.spacing) {
+      const double middle = 0.5 * (low + high);
+      ((value(at(middle)) < 0) != (here < 0) ? high : low) = middle;
     }
     rim = at(here < 0 ? low : high);  // inside
     return true;
