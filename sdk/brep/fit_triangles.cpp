@@ -91,11 +91,15 @@ void halve(Triangulation& mesh, Feet feet, const Mat3& lattice, const Wants& wan
       if (!wants(segment, norm(foot->point - middle))) continue;
       any = true;
       if (divided[sides.triangle[0]] || divided[sides.triangle[1]]) continue;  // in the next pass
-      // A little towards the corners beside it: on a round border the middle's foot can be one of them.
+      // A little towards the corners beside it: on a round border the middle's foot can be one of them. Not far: a
+      // short segment across a strip that bends has corners which are far away and do not see each other.
       Vec3 corners = -2.0 * (place(segment[0]) + place(segment[1]));
       for (const std::size_t t : sides.triangle)
         for (const std::uint32_t corner : mesh.triangles[t]) corners += place(corner);
-      const auto point = feet(0.75 * middle + 0.125 * corners, near, {foot->at, {}});
+      Vec3 beside_middle = 0.75 * middle + 0.125 * corners;
+      if (const Vec3 aside = beside_middle - middle; norm(aside) > near)
+        beside_middle = middle + near / norm(aside) * aside;
+      const auto point = feet(beside_middle, near, {foot->at, {}});
       if (!point) continue;
       const auto fresh = static_cast<std::uint32_t>(mesh.points.size());
       mesh.points.push_back({.point = point->point});

@@ -339,7 +339,7 @@ std::optional<ClippedLattice> clipped_lattice(const Found& found, const Index3& 
   const bool is_given_up = made && made->is_given_up;
   if (is_given_up) made.reset();
   bool is_second = false;
-  if (!made && poles_aside && !context.run.should_stop()) {
+  if (!made && poles_aside && !first.has_errors() && !context.run.should_stop()) {
     made = attempt(*poles_aside, Ways::all, second);
     is_second = made || context.run.should_stop();
     if (!is_second && is_given_up) made = attempt(found.cell, Ways::all, first);

@@ -254,6 +254,18 @@ bool Builder::find_clusters(CellKind& kind, const std::vector<std::uint32_t>& fa
   return true;
 }
 
+/// False with an error: the solids are right, and made in other ways they would be no easier to triangulate.
+bool has_meshes(Builder& builder, const MeshFineness& fineness, const RunOptions& run, DiagnosticSink& sink) {
+  try {
+    builder.add_meshes(fineness, run);
+    return true;
+  } catch (const Standard_Failure& failure) {
+    if (!run.should_stop())
+      sink.report({.code = Code::geometry_kernel, .args = {"making the triangles of cells", what(failure)}});
+    return false;
+  }
+}
+
 }  // namespace
 
 bool walls_overlap(const CellKind& low, const CellKind& high, int axis, Vec3 size) {
@@ -322,7 +334,7 @@ std::optional<Quotient> build_quotient(const CellShape& cell, const std::vector<
       if (run.should_stop()) throw Standard_Failure("stopped");
       if (!builder.add_kind(solid)) fault = "a face of the unit cell bounds no solid";
     }
-    if (options.mesh) builder.add_meshes(*options.mesh, run);
+    if (options.mesh && !has_meshes(builder, *options.mesh, run, sink)) return {};
     if (!builder.add_faces(run)) fault = "the unit cell is not a manifold inside its box";
     if (fault.empty()) find_natural_faces(quotient);
   } catch (const Standard_Failure& failure) {

@@ -5,7 +5,6 @@
 #include <BRepMesh_Deflection.hxx>
 #include <BRepMesh_EdgeDiscret.hxx>
 #include <GCPnts_TangentialDeflection.hxx>
-#include <GeomAPI_ProjectPointOnCurve.hxx>
 #include <IMeshData_Edge.hxx>
 #include <IMeshData_Model.hxx>
 #include <IMeshTools_CurveTessellator.hxx>
@@ -16,9 +15,11 @@
 #include <tuple>
 
 #include "lattice/border_mesh.hpp"
+#include "lattice/parameter_mesh.hpp"
 #include "meso/brep/instance_map.hpp"
 #include "meso/brep/placement.hpp"
 #include "stop_watch.hpp"
+#include "unrolled_mesh.hpp"
 
 namespace meso::brep {
 namespace {
@@ -31,12 +32,8 @@ class GivenPoints : public IMeshTools_CurveTessellator {
     double first = 0, last = 0;
     BRep_Tool::Range(edge, first, last);
     points_.emplace_back(first, BRep_Tool::Pnt(TopExp::FirstVertex(edge)));
-    for (const Vec3 p : inner) {
-      const GeomAPI_ProjectPointOnCurve foot(to_pnt(p), BRep_Tool::Curve(edge, first, last), first, last);
-      if (foot.NbPoints() == 0 || foot.LowerDistanceParameter() <= points_.back().first)
-        throw Standard_Failure("equal edges are not equal");
-      points_.emplace_back(foot.LowerDistanceParameter(), to_pnt(p));
-    }
+    const std::vector<double> parameters = parameters_on(edge, inner);
+    for (std::size_t i = 0; i < inner.size(); ++i) points_.emplace_back(parameters[i], to_pnt(inner[i]));
     points_.emplace_back(last, BRep_Tool::Pnt(TopExp::LastVertex(edge)));
   }
   Standard_Integer PointsNb() const override { return static_cast<Standard_Integer>(points_.size()); }
@@ -48,14 +45,6 @@ class GivenPoints : public IMeshTools_CurveTessellator {
  private:
   std::vector<std::pair<double, gp_Pnt>> points_;
 };
-
-/// The points between the ends of an edge of a kind, along that edge.
-std::vector<Vec3> points_of(const OrbitMatcher::Match& match, const Template& geometry, const EdgePolygons& polygons) {
-  std::vector<Vec3> points = polygons[match.edge];
-  for (Vec3& p : points) p += cell_origin(geometry, match.offset);
-  if (match.flipped) std::ranges::reverse(points);
-  return points;
-}
 
 /// BRepMesh divides each edge by what its faces need; here the division is given.
 class GivenEdges : public IMeshTools_ModelAlgo {
@@ -156,56 +145,33 @@ class Segments {
   std::map<std::pair<PointName, PointName>, int> counts_;
 };
 
-}  // namespace
-
-EdgePolygons mesh_alike(const std::vector<TemplateEdges>& kinds, const Template& geometry, const MeshFineness& fineness,
-                        const RunOptions& run) {
-  constexpr int most_divisions = 5;
-  EdgePolygons polygons(geometry.edges.size());
-  std::vector<int> divisions(geometry.edges.size(), 0);
-  std::vector<bool> changed(geometry.edges.size(), true), taken(geometry.edges.size(), false);
-  for (int round = 0; round <= most_divisions; ++round) {
-    std::vector<bool> divided = taken;
-    for (const TemplateEdges& kind : kinds)
-      for (std::size_t i = 0; i < kind.matches.size(); ++i) {
-        const std::uint32_t orbit = kind.matches[i].edge;
-        if (divided[orbit] || !changed[orbit] || geometry.edges[orbit].degenerate) continue;
-        divided[orbit] = true;
-        polygons[orbit] = divide(TopoDS::Edge(kind.edges(static_cast<int>(i) + 1).Oriented(TopAbs_FORWARD)), fineness,
-                                 divisions[orbit]);
-      }
-    std::vector<bool> coarse(geometry.edges.size());
-    taken.assign(geometry.edges.size(), false);
-    bool done = true;
-    for (const TemplateEdges& kind : kinds) {
-      if (run.should_stop()) throw Standard_Failure("stopped");
-      const bool touched = std::ranges::any_of(kind.matches, [&](const auto& m) { return bool{changed[m.edge]}; });
-      if (!touched) continue;
-      mesh_one(kind, geometry, polygons, fineness, run);
-      for (TopoDS_Iterator it(kind.shell); it.More(); it.Next()) {
-        const TopoDS_Face& face = TopoDS::Face(it.Value());
-        if (named_mesh(face, kind, geometry, polygons, fineness)) continue;
-        done = false;
-        if (take_points(face, kind, geometry, polygons, taken)) continue;
-        for (TopExp_Explorer edge(face, TopAbs_EDGE); edge.More(); edge.Next())
-          coarse[kind.match_of(TopoDS::Edge(edge.Current())).edge] = true;
-      }
-    }
-    if (done) return polygons;
-    for (std::size_t e = 0; e < coarse.size(); ++e) {
-      divisions[e] += coarse[e];
-      taken[e] = taken[e] && !coarse[e];
-      changed[e] = coarse[e] || taken[e];
-    }
-  }
-  throw Standard_Failure("a face cannot be divided into triangles");
+/// Less shows nowhere; and edges that are known to no more may cross.
+double negligible_fold(const TopoDS_Face& face, const MeshFineness& fineness) {
+  double out = 1e-3 * fineness.deflection;
+  for (TopExp_Explorer it(face, TopAbs_EDGE); it.More(); it.Next())
+    out = std::fmax(out, 2 * BRep_Tool::Tolerance(TopoDS::Edge(it.Current())));
+  return out;
 }
 
-namespace {
+/// As the triangles are, not as the parameters are that they were made in.
+bool is_folded(const Triangulation& mesh, const Poly_Triangulation& made, const TopoDS_Face& face,
+               const Template& geometry, const MeshFineness& fineness) {
+  const Handle(Geom_Surface) surface = BRep_Tool::Surface(face);
+  if (GeomAdaptor_Surface(surface).GetType() == GeomAbs_Plane || !made.HasUVNodes()) return false;
+  std::vector<BorderPoint> points;
+  for (std::size_t i = 0; i < mesh.points.size(); ++i) {
+    const gp_Pnt2d at = made.UVNode(static_cast<int>(i) + 1);
+    points.push_back({mesh.points[i].point + cell_origin(geometry, mesh.points[i].offset), {at.X(), at.Y()}});
+  }
+  auto triangles = mesh.triangles;
+  if (face.Orientation() == TopAbs_REVERSED)
+    for (auto& t : triangles) std::swap(t[1], t[2]);
+  return fold_of(surface, points, triangles) > negligible_fold(face, fineness);
+}
 
-/// OpenCASCADE's triangles, if they reach the edges.
+/// OpenCASCADE's triangles, if they reach the edges and are not folded.
 std::optional<Triangulation> own_mesh(const TopoDS_Face& face, const TemplateEdges& kind, const Template& geometry,
-                                      const EdgePolygons& polygons) {
+                                      const EdgePolygons& polygons, const MeshFineness& fineness) {
   TopLoc_Location location;
   const Handle(Poly_Triangulation) mesh = BRep_Tool::Triangulation(face, location);
   if (mesh.IsNull()) return {};
@@ -256,16 +222,96 @@ std::optional<Triangulation> own_mesh(const TopoDS_Face& face, const TemplateEdg
   for (const auto& [nodes, reversed] : borders)
     for (std::size_t k = 0; k + 1 < nodes.size(); ++k)
       segments.add(out.points[nodes[k]], out.points[nodes[k + 1]], reversed ? 1 : -1);
-  if (!segments.cancel()) return {};
+  if (!segments.cancel() || is_folded(out, *mesh, face, geometry, fineness)) return {};
   return out;
+}
+
+/// What edges lack for the faces that could not be meshed yet.
+struct Wanted {
+  explicit Wanted(std::size_t edges) : taken(edges), coarse(edges) {}
+  void insert_needed(EdgePolygons& polygons) {
+    std::erase_if(needed, [&](const NeededPoint& p) { return coarse[p.edge] || taken[p.edge]; });
+    for (const std::uint32_t edge : insert(std::move(needed), polygons)) taken[edge] = true;
+  }
+
+  std::vector<NeededPoint> needed;
+  std::vector<bool> taken;   ///< have got points, and are to keep them
+  std::vector<bool> coarse;  ///< to be divided further
+};
+
+/// False: it will be, with the points that are wanted. The last time, folds are put up with.
+bool is_meshed(const TopoDS_Face& face, const TemplateEdges& kind, const Template& geometry,
+               const MeshFineness& fineness, bool is_last, EdgePolygons& polygons, Wanted& wanted) {
+  if (own_mesh(face, kind, geometry, polygons, fineness)) return true;
+  if (border_mesh(face, kind, geometry, polygons, fineness)) return true;
+  const auto unrolled = parameter_mesh(face, kind, geometry, polygons);
+  if (unrolled && is_last) return true;
+  if (unrolled && !unrolled->needed.empty()) {
+    wanted.needed.insert(wanted.needed.end(), unrolled->needed.begin(), unrolled->needed.end());
+    return false;
+  }
+  if (take_points(face, kind, geometry, polygons, wanted.taken)) return false;
+  if (unrolled && unrolled->fold <= negligible_fold(face, fineness)) return true;
+  for (TopExp_Explorer edge(face, TopAbs_EDGE); edge.More(); edge.Next())
+    wanted.coarse[kind.match_of(TopoDS::Edge(edge.Current())).edge] = true;
+  return false;
 }
 
 }  // namespace
 
+std::vector<Vec3> points_of(const OrbitMatcher::Match& match, const Template& geometry, const EdgePolygons& polygons) {
+  std::vector<Vec3> points = polygons[match.edge];
+  for (Vec3& p : points) p += cell_origin(geometry, match.offset);
+  if (match.flipped) std::ranges::reverse(points);
+  return points;
+}
+
+EdgePolygons mesh_alike(const std::vector<TemplateEdges>& kinds, const Template& geometry, const MeshFineness& fineness,
+                        const RunOptions& run) {
+  constexpr int most_divisions = 5;
+  EdgePolygons polygons(geometry.edges.size());
+  std::vector<int> divisions(geometry.edges.size(), 0);
+  std::vector<bool> changed(geometry.edges.size(), true), taken(geometry.edges.size(), false);  // as they are now
+  for (int round = 0; round <= most_divisions; ++round) {
+    const bool is_last = round == most_divisions;
+    std::vector<bool> divided = taken;
+    for (const TemplateEdges& kind : kinds)
+      for (std::size_t i = 0; i < kind.matches.size(); ++i) {
+        const std::uint32_t orbit = kind.matches[i].edge;
+        if (divided[orbit] || !changed[orbit] || geometry.edges[orbit].degenerate) continue;
+        divided[orbit] = true;
+        polygons[orbit] = divide(TopoDS::Edge(kind.edges(static_cast<int>(i) + 1).Oriented(TopAbs_FORWARD)), fineness,
+                                 divisions[orbit]);
+      }
+    Wanted wanted(geometry.edges.size());
+    bool done = true;
+    for (const TemplateEdges& kind : kinds) {
+      if (run.should_stop()) throw Standard_Failure("stopped");
+      const bool touched = std::ranges::any_of(kind.matches, [&](const auto& m) { return bool{changed[m.edge]}; });
+      if (!touched) continue;
+      mesh_one(kind, geometry, polygons, fineness, run);
+      for (TopoDS_Iterator it(kind.shell); it.More(); it.Next()) {
+        const TopoDS_Face& face = TopoDS::Face(it.Value());
+        done = is_meshed(face, kind, geometry, fineness, is_last, polygons, wanted) && done;
+      }
+    }
+    if (done) return polygons;
+    wanted.insert_needed(polygons);
+    for (std::size_t e = 0; e < taken.size(); ++e) {
+      divisions[e] += wanted.coarse[e];
+      taken[e] = wanted.taken[e] && !wanted.coarse[e];
+      changed[e] = wanted.coarse[e] || taken[e];
+    }
+  }
+  throw Standard_Failure("a face cannot be divided into triangles");
+}
+
 std::optional<Triangulation> named_mesh(const TopoDS_Face& face, const TemplateEdges& kind, const Template& geometry,
                                         const EdgePolygons& polygons, const MeshFineness& fineness) {
-  auto mesh = own_mesh(face, kind, geometry, polygons);
-  return mesh ? std::move(mesh) : border_mesh(face, kind, geometry, polygons, fineness);
+  if (auto mesh = own_mesh(face, kind, geometry, polygons, fineness)) return mesh;
+  if (auto mesh = border_mesh(face, kind, geometry, polygons, fineness)) return mesh;
+  auto unrolled = parameter_mesh(face, kind, geometry, polygons);
+  return unrolled ? std::optional(std::move(unrolled->mesh)) : std::nullopt;
 }
 
 }  // namespace meso::brep

@@ -34,6 +34,10 @@ struct TemplateEdges {
 /// Per edge of the template: the points between its ends.
 using EdgePolygons = std::vector<std::vector<Vec3>>;
 
+/// The points between the ends of an edge of a kind, along that edge.
+[[nodiscard]] std::vector<Vec3> points_of(const OrbitMatcher::Match& match, const Template& geometry,
+                                          const EdgePolygons& polygons);
+
 /// Two mesh points with one name are one.
 using PointName = std::pair<std::array<double, 3>, Index3>;
 [[nodiscard]] inline PointName name_of(const MeshPoint& p) { return {{p.point.x, p.point.y, p.point.z}, p.offset}; }

@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: Apache-2.0
+// Crescents on all kinds of surfaces, narrower than the chords of their edges are off.
+#include "lattice/parameter_mesh.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Geom2d_BezierCurve.hxx>
+#include <Geom_BezierSurface.hxx>
+#include <ShapeAnalysis_Surface.hxx>
+#include <TColgp_Array1OfPnt2d.hxx>
+#include <TColgp_Array2OfPnt.hxx>
+#include <algorithm>
+#include <map>
+
+#include "lattice/template_mesh.hpp"
+#include "meso/brep/placement.hpp"
+
+namespace meso::brep {
+namespace {
+
+constexpr MeshFineness coarse{.deflection = 0.1, .angle = 0.5};
+
+Handle(Geom2d_BezierCurve) bow(double half, double height) {
+  TColgp_Array1OfPnt2d poles(1, 3);
+  poles(1) = {-half, 0};
+  poles(2) = {0, 2 * height};
+  poles(3) = {half, 0};
+  return new Geom2d_BezierCurve(poles);
+}
+
+Handle(Geom2d_BezierCurve) moved(const Handle(Geom2d_BezierCurve) & curve, double from, double to, gp_Vec2d by) {
+  const Handle(Geom2d_BezierCurve) out = Handle(Geom2d_BezierCurve)::DownCast(curve->Copy());
+  out->Segment(from, to);
+  out->Translate(by);
+  return out;
+}
+
+/// Between two bows with the same ends in the plane of the parameters; the lower one has a corner on its way, so that
+/// points of the one have none of the other beside them.
+TopoDS_Face crescent(const Handle(Geom_Surface) & surface, gp_Pnt2d middle, double half, double height, double width) {
+  const gp_Vec2d by(middle.X(), middle.Y());
+  const auto low = bow(half, height), high = bow(half, height + width);
+  constexpr double corner = 0.37;
+  const auto vertex = [&](const gp_Pnt2d& p) {
+    TopoDS_Vertex out;
+    BRep_Builder().MakeVertex(out, surface->Value(p.X() + by.X(), p.Y() + by.Y()), 1e-7);
+    return out;
+  };
+  const TopoDS_Vertex left = vertex(low->Value(0)), on_way = vertex(low->Value(corner)), right = vertex(low->Value(1));
+  BRepBuilderAPI_MakeWire wire;
+  wire.Add(BRepBuilderAPI_MakeEdge(moved(low, 0, corner, by), surface, left, on_way).Edge());
+  wire.Add(BRepBuilderAPI_MakeEdge(moved(low, corner, 1, by), surface, on_way, right).Edge());
+  wire.Add(TopoDS::Edge(BRepBuilderAPI_MakeEdge(moved(high, 0, 1, by), surface, left, right).Edge().Reversed()));
+  TopoDS_Face face = BRepBuilderAPI_MakeFace(surface, wire.Wire(), true).Face();
+  BRepLib::BuildCurves3d(face);
+  BRepLib::SameParameter(face, 1e-6);
+  return face;
+}
+
+/// One face as the only one of a cell of 10 mm, and its triangles.
+struct Meshed {
+  explicit Meshed(const TopoDS_Face& face) {
+    BRep_Builder().MakeShell(shell);
+    BRep_Builder().Add(shell, face);
+    TopExp::MapShapes(shell, TopAbs_EDGE, edges);
+    geometry.lattice = Mat3::from_columns({10, 0, 0}, {0, 10, 0}, {0, 0, 10});
+    std::vector<std::vector<Vec3>> samples;
+    matches = OrbitMatcher(geometry, samples, {-5, -5, -5}, 1e-5).match(edges);
+    const TemplateEdges kind{shell, edges, matches};
+    polygons = mesh_alike({kind}, geometry, coarse, {});
+    mesh = named_mesh(face, kind, geometry, polygons, coarse);
+  }
+  [[nodiscard]] std::size_t border() const {
+    std::size_t points = 0;
+    for (const auto& polygon : polygons) points += polygon.size() + 1;
+    return points;
+  }
+
+  TopoDS_Shell shell;
+  TopTools_IndexedMapOfShape edges;
+  Template geometry;
+  std::vector<OrbitMatcher::Match> matches;
+  EdgePolygons polygons;
+  std::optional<Triangulation> mesh;
+};
+
+/// Sides with one triangle only.
+std::size_t open_sides(const Triangulation& mesh) {
+  std::map<std::pair<PointName, PointName>, int> sides;
+  for (const auto& t : mesh.triangles)
+    for (std::size_t k = 0; k < 3; ++k) {
+      const PointName a = name_of(mesh.points[t[k]]), b = name_of(mesh.points[t[(k + 1) % 3]]);
+      EXPECT_NE(a, b);
+      sides[std::minmax(a, b)] += a < b ? 1 : -1;
+    }
+  return static_cast<std::size_t>(std::ranges::count_if(sides, [](const auto& side) { return side.second != 0; }));
+}
+
+/// How high a triangle is that lies the wrong way about, seen along the face's normal at its middle.
+double fold(const Triangulation& mesh, const std::array<std::uint32_t, 3>& t, const TopoDS_Face& face,
+            const Template& geometry) {
+  std::array<Vec3, 3> p;
+  for (std::size_t k = 0; k < 3; ++k) p[k] = mesh.points[t[k]].point + cell_origin(geometry, mesh.points[t[k]].offset);
+  ShapeAnalysis_Surface surface(BRep_Tool::Surface(face));
+  const gp_Pnt2d at = surface.ValueOfUV(to_pnt((p[0] + p[1] + p[2]) / 3.0), 1e-9);
+  gp_Pnt foot;
+  gp_Vec u, v;
+  surface.Surface()->D1(at.X(), at.Y(), foot, u, v);
+  Vec3 normal = to_vec(u.Crossed(v).Normalized().XYZ());
+  if (face.Orientation() == TopAbs_REVERSED) normal = -normal;
+  double longest = 0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Vec3 side = p[(k + 1) % 3] - p[k];
+    longest = std::max(longest, norm(side - dot(side, normal) * normal));
+  }
+  return -dot(normal, cross(p[1] - p[0], p[2] - p[0])) / longest;
+}
+
+struct Case {
+  const char* name;
+  Handle(Geom_Surface) surface;
+  gp_Pnt2d middle;
+  double half, height;  ///< in parameters
+};
+
+Handle(Geom_Surface) saddle() {
+  TColgp_Array2OfPnt poles(1, 3, 1, 3);
+  for (int i = 1; i <= 3; ++i)
+    for (int k = 1; k <= 3; ++k) poles(i, k) = {i - 2.0, k - 2.0, 0.8 * (i - 2) * (k - 2) + (i == 2 ? 0.7 : 0)};
+  return GeomConvert::SurfaceToBSplineSurface(new Geom_BezierSurface(poles));
+}
+
+std::vector<Case> cases() {
+  const gp_Ax3 axes(gp_Pnt(0.1, 0.2, 0.3), gp_Dir(1, 2, 3));
+  return {{"Cylinder", new Geom_CylindricalSurface(axes, 0.5), {1, 0}, 0.9, 0.4},
+          {"Cone", new Geom_ConicalSurface(axes, 0.4, 0.5), {1, 0.1}, 0.9, 0.3},
+          {"Sphere", new Geom_SphericalSurface(axes, 0.5), {1, 0.2}, 0.9, 0.5},
+          {"Torus", new Geom_ToroidalSurface(axes, 1, 0.4), {1, 0.2}, 0.5, 0.9},
+          {"Spline", saddle(), {0.5, 0.3}, 0.4, 0.4}};
+}
+
+class Crescent : public testing::TestWithParam<Case> {};
+INSTANTIATE_TEST_SUITE_P(Surfaces, Crescent, testing::ValuesIn(cases()),
+                         [](const auto& test) { return std::string(test.param.name); });
+
+TEST_P(Crescent, HasThePointsOfItsEdgesAndNoFold) {
+  const Case& c = GetParam();
+  for (const double width : {0.1, 0.016, 1e-3, 2e-5})
+    for (const bool is_reversed : {false, true}) {
+      TopoDS_Face face = crescent(c.surface, c.middle, c.half, c.height, width);
+      if (is_reversed) face.Reverse();
+      const Meshed made(face);
+      ASSERT_TRUE(made.mesh) << width;
+      EXPECT_EQ(open_sides(*made.mesh), made.border()) << width;
+      EXPECT_LE(made.border(), 60u) << width << ": edges that are divided and divided again";
+      for (const auto& t : made.mesh->triangles)
+        EXPECT_LT(fold(*made.mesh, t, face, made.geometry), 1e-3 * coarse.deflection)
+            << width << (is_reversed ? " reversed" : "");
+    }
+}
+
+TEST(ParametersOn, RiseWherePointsAreInTheWrongOrder) {
+  const TopoDS_Edge edge = BRepBuilderAPI_MakeEdge(gp_Pnt(0, 0, 0), gp_Pnt(1, 0, 0));
+  EXPECT_EQ(parameters_on(edge, {{0.25, 0, 0}, {0.5, 1e-4, 0}}), (std::vector<double>{0.25, 0.5}));
+  const std::vector<double> turned = parameters_on(edge, {{0.5, 0, 0}, {0.4, 0, 0}, {0.6, 0, 0}});
+  ASSERT_EQ(turned.size(), 3u);
+  EXPECT_TRUE(0 < turned[0] && turned[0] < turned[1] && turned[1] < turned[2] && turned[2] < 1);
+}
+
+}  // namespace
+}  // namespace meso::brep
