@@ -1,249 +1,61 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lattice/parameter_mesh.hpp"
 
-#include <GeomAPI_ProjectPointOnCurve.hxx>
 #include <algorithm>
-#include <cmath>
 #include <tuple>
 
 #include "meso/brep/instance_map.hpp"
 #include "meso/brep/placement.hpp"
-#include "unrolled_mesh.hpp"
 
 namespace meso::brep {
 namespace {
 
-/// The points of an edge in the direction of a loop, but its last, which begins the next edge.
-struct Stretch {
-  TopoDS_Edge edge;
-  OrbitMatcher::Match match;
-  std::vector<MeshPoint> points;
-  std::vector<PlanePoint> at;
-  std::vector<double> parameters;  ///< along the edge, of the last point, too
-  PointName start, end;
-  PlanePoint end_at{};
-};
-
-Stretch stretch_of(const TopoDS_Edge& edge, const TopoDS_Face& face, const TemplateEdges& kind,
-                   const Template& geometry, const EdgePolygons& polygons) {
-  Stretch out{.edge = edge, .match = kind.match_of(edge)};
-  const EdgeTemplate& orbit = geometry.edges[out.match.edge];
+EdgePoints named_points(const TopoDS_Edge& edge, const TemplateEdges& kind, const Template& geometry,
+                        const EdgePolygons& polygons) {
+  const OrbitMatcher::Match& match = kind.match_of(edge);
+  const EdgeTemplate& orbit = geometry.edges[match.edge];
   const auto end = [&](std::size_t k) {
-    return MeshPoint{geometry.vertices[orbit.vertex[k]], out.match.offset + orbit.vertex_offset[k]};
+    return MeshPoint{geometry.vertices[orbit.vertex[k]], match.offset + orbit.vertex_offset[k]};
   };
+  EdgePoints out;
   double first = 0, last = 0;
-  const Handle(Geom2d_Curve) curve = BRep_Tool::CurveOnSurface(edge, face, first, last);
-  if (curve.IsNull()) throw Standard_Failure("an edge has no curve on its face");
-  out.parameters = {first};
-  out.points = {end(0)};
-  if (!orbit.degenerate) {
-    const auto inner = points_of(out.match, geometry, polygons);
-    for (const double t : parameters_on(TopoDS::Edge(edge.Oriented(TopAbs_FORWARD)), inner))
-      out.parameters.push_back(t);
-    for (const Vec3 p : polygons[out.match.edge]) out.points.push_back({p, out.match.offset});
-  }
+  BRep_Tool::Range(edge, first, last);
+  if (orbit.degenerate) return {.points = {end(0), end(0)}, .parameters = {first, last}};
+  const TopoDS_Edge forward = TopoDS::Edge(edge.Oriented(TopAbs_FORWARD));
+  out.parameters = parameters_on(forward, points_of(match, geometry, polygons));
+  out.parameters.insert(out.parameters.begin(), first);
   out.parameters.push_back(last);
-  out.points.push_back(orbit.degenerate ? end(0) : end(1));
-  if (out.match.flipped) std::ranges::reverse(out.points);
-  for (const double t : out.parameters) {
-    const gp_Pnt2d p = curve->Value(t);
-    out.at.push_back({p.X(), p.Y()});
-  }
-  if (edge.Orientation() == TopAbs_REVERSED) {
-    std::ranges::reverse(out.points);
-    std::ranges::reverse(out.at);
-    std::ranges::reverse(out.parameters);
-  }
-  out.start = name_of(out.points.front());
-  out.end = name_of(out.points.back());
-  out.end_at = out.at.back();
-  out.points.pop_back();
-  out.at.pop_back();
+  out.points = {end(0)};
+  for (const Vec3 p : polygons[match.edge]) out.points.push_back({p, match.offset});
+  out.points.push_back(end(1));
+  if (match.flipped) std::ranges::reverse(out.points);
   return out;
 }
-
-double between(const PlanePoint& a, const PlanePoint& b) { return std::hypot(a[0] - b[0], a[1] - b[1]); }
-
-/// Of those that begin where `last` ends the one that does so on the surface, too: seams are gone along twice.
-std::vector<Stretch>::iterator next_after(const Stretch& last, std::vector<Stretch>& stretches) {
-  auto nearest = stretches.end();
-  double least = HUGE_VAL;
-  for (auto it = stretches.begin(); it != stretches.end(); ++it) {
-    const double away = between(it->at.front(), last.end_at);
-    if (it->start == last.end && away < least) std::tie(least, nearest) = std::tuple(away, it);
-  }
-  return nearest;
-}
-
-using Loop = std::vector<Stretch>;
-
-/// Empty if the edges do not make closed loops.
-std::vector<Loop> chained(std::vector<Stretch> stretches) {
-  std::vector<Loop> loops;
-  while (!stretches.empty()) {
-    Loop& loop = loops.emplace_back();
-    auto next = stretches.begin();
-    do {
-      if (next == stretches.end()) return {};
-      loop.push_back(std::move(*next));
-      stretches.erase(next);
-      next = next_after(loop.back(), stretches);
-      const PlanePoint& end = loop.back().end_at;
-      if (loop.front().start != loop.back().end) continue;
-      if (next == stretches.end() || between(loop.front().at.front(), end) <= between(next->at.front(), end)) break;
-    } while (true);
-  }
-  return loops;
-}
-
-Vec3 place_of(const MeshPoint& p, const Template& geometry) { return p.point + cell_origin(geometry, p.offset); }
-
-/// The border of a face as it is told to `unrolled_mesh`, and where its points are from.
-class FaceBorder {
- public:
-  FaceBorder(const TopoDS_Face& face, std::vector<Loop> loops, const Template& geometry)
-      : face_(face), loops_(std::move(loops)), geometry_(geometry) {
-    for (const Loop& loop : loops_) {
-      for (const Stretch& stretch : loop)
-        for (const MeshPoint& p : stretch.points) places_.push_back(place_of(p, geometry));
-      ends_.push_back(places_.size());
-    }
-  }
-
-  [[nodiscard]] std::optional<ParameterMesh> mesh() const {
-    std::vector<BorderLoop> borders;
-    ParameterMesh out;
-    for (const Loop& loop : loops_) {
-      BorderLoop& border = borders.emplace_back();
-      const auto begin = static_cast<std::ptrdiff_t>(out.mesh.points.size());
-      for (const Stretch& stretch : loop)
-        for (std::size_t i = 0; i < stretch.points.size(); ++i) {
-          out.mesh.points.push_back(stretch.points[i]);
-          border.push_back({place_of(stretch.points[i], geometry_), stretch.at[i]});
-        }
-      if (!is_reversed()) continue;
-      std::reverse(out.mesh.points.begin() + begin, out.mesh.points.end());
-      std::ranges::reverse(border);
-    }
-    auto unrolled = unrolled_mesh(BRep_Tool::Surface(face_), borders);
-    if (!unrolled) return {};
-    out.fold = unrolled->fold;
-    for (auto& t : unrolled->triangles) {
-      if (is_reversed()) std::swap(t[1], t[2]);
-      bool is_flat = false;  // at a pole
-      for (std::size_t k = 0; k < 3; ++k)
-        is_flat = is_flat || name_of(out.mesh.points[t[k]]) == name_of(out.mesh.points[t[(k + 1) % 3]]);
-      if (!is_flat) out.mesh.triangles.push_back(t);
-    }
-    if (out.fold > 0) out.needed = needed();
-    return out;
-  }
-
- private:
-  [[nodiscard]] bool is_reversed() const { return face_.Orientation() == TopAbs_REVERSED; }
-
-  /// Beside each point of the border that lies between an edge and its chord.
-  [[nodiscard]] std::vector<NeededPoint> needed() const {
-    std::vector<NeededPoint> out;
-    std::size_t at = 0, loop = 0, begin = 0;
-    for (const Loop& stretches : loops_) {
-      for (const Stretch& stretch : stretches) {
-        for (std::size_t i = 0; i < stretch.points.size(); ++i) {
-          const std::size_t next = at + 1 == ends_[loop] ? begin : at + 1;
-          if (!geometry_.edges[stretch.match.edge].degenerate) add_needed(stretch, i, places_[at], places_[next], out);
-          ++at;
-        }
-      }
-      begin = ends_[loop++];
-    }
-    return out;
-  }
-
-  void add_needed(const Stretch& stretch, std::size_t i, Vec3 a, Vec3 b, std::vector<NeededPoint>& out) const {
-    constexpr double beside_end = 1e-3;  // of the chord
-    const Vec3 along = b - a;
-    const double length = norm(along);
-    if (length == 0) return;
-    const Vec3 left = cross(outward(stretch.at[i]), along) / length;
-    const auto [first, last] = std::minmax(stretch.parameters[i], stretch.parameters[i + 1]);
-    double unused_first = 0, unused_last = 0;
-    const Handle(Geom_Curve) curve = BRep_Tool::Curve(stretch.edge, unused_first, unused_last);
-    for (const Vec3 p : places_) {
-      const double s = dot(p - a, along) / (length * length), side = dot(p - a, left);
-      if (s < beside_end || s > 1 - beside_end || side >= 0 || -side > length) continue;
-      const GeomAPI_ProjectPointOnCurve foot(to_pnt(p), curve, first, last);
-      if (foot.NbPoints() == 0) continue;
-      const Vec3 q = to_vec(foot.NearestPoint());
-      if (dot(q - a, left) > side + 1e-9 * length) continue;  // beyond the edge, too: on another side of the face
-      const bool along_orbit = stretch.match.flipped == (stretch.edge.Orientation() == TopAbs_REVERSED);
-      const double at = dot(q - a, along) / (length * length);
-      if (at < beside_end || at > 1 - beside_end) continue;
-      out.push_back({.edge = stretch.match.edge,
-                     .segment = along_orbit ? i : stretch.points.size() - 1 - i,
-                     .at = along_orbit ? at : 1 - at,
-                     .point = q - cell_origin(geometry_, stretch.match.offset)});
-    }
-  }
-
-  /// The face's normal, of any length.
-  [[nodiscard]] Vec3 outward(const PlanePoint& at) const {
-    gp_Pnt p;
-    gp_Vec u, v;
-    BRep_Tool::Surface(face_)->D1(at[0], at[1], p, u, v);
-    const Vec3 normal = to_vec(u.Crossed(v).XYZ());
-    return is_reversed() ? -normal : normal;
-  }
-
-  const TopoDS_Face& face_;
-  std::vector<Loop> loops_;
-  const Template& geometry_;
-  std::vector<Vec3> places_;       ///< of all points
-  std::vector<std::size_t> ends_;  ///< of the loops
-};
 
 }  // namespace
 
-std::vector<double> parameters_on(const TopoDS_Edge& edge, const std::vector<Vec3>& inner) {
-  double first = 0, last = 0;
-  const Handle(Geom_Curve) curve = BRep_Tool::Curve(edge, first, last);
-  std::vector<double> out;
-  double before = first;
-  for (const Vec3 p : inner) {
-    const GeomAPI_ProjectPointOnCurve foot(to_pnt(p), curve, first, last);
-    if (foot.NbPoints() == 0 || foot.LowerDistanceParameter() <= before) break;
-    out.push_back(before = foot.LowerDistanceParameter());
-  }
-  if (out.size() == inner.size() && before < last) return out;
-  std::vector<double> lengths;
-  double length = 0;
-  Vec3 end = to_vec(curve->Value(first));
-  for (const Vec3 p : inner) {
-    lengths.push_back(length += norm(p - end));
-    end = p;
-  }
-  length += norm(to_vec(curve->Value(last)) - end);
-  out.clear();
-  for (const double until : lengths) out.push_back(first + until / length * (last - first));
-  return out;
+std::optional<BorderedMesh> parameter_mesh(const TopoDS_Face& face, const TemplateEdges& kind, const Template& geometry,
+                                           const EdgePolygons& polygons) {
+  return bordered_mesh(face, geometry,
+                       [&](const TopoDS_Edge& edge) { return named_points(edge, kind, geometry, polygons); });
 }
 
-std::optional<ParameterMesh> parameter_mesh(const TopoDS_Face& face, const TemplateEdges& kind,
-                                            const Template& geometry, const EdgePolygons& polygons) {
-  std::vector<Stretch> stretches;
-  for (TopExp_Explorer it(face, TopAbs_EDGE); it.More(); it.Next())
-    stretches.push_back(stretch_of(TopoDS::Edge(it.Current()), face, kind, geometry, polygons));
-  auto loops = chained(std::move(stretches));
-  if (loops.empty()) return {};
-  return FaceBorder(face, std::move(loops), geometry).mesh();
+OrbitPoint of_orbit(const NeededPoint& p, const TemplateEdges& kind, const Template& geometry,
+                    const EdgePolygons& polygons) {
+  const OrbitMatcher::Match& match = kind.match_of(p.edge);
+  return {.edge = match.edge,
+          .segment = match.flipped ? polygons[match.edge].size() - p.segment : p.segment,
+          .at = match.flipped ? 1 - p.at : p.at,
+          .point = p.point - cell_origin(geometry, match.offset)};
 }
 
-std::set<std::uint32_t> insert(std::vector<NeededPoint> needed, EdgePolygons& polygons) {
+std::set<std::uint32_t> insert(std::vector<OrbitPoint> needed, EdgePolygons& polygons) {
   constexpr double apart = 0.02;  // of a segment
   std::set<std::uint32_t> out;
   // The last first, so that those before it keep their numbers.
-  std::ranges::sort(needed, std::greater{}, [](const NeededPoint& p) { return std::tuple(p.edge, p.segment, p.at); });
-  const NeededPoint* last = nullptr;
-  for (const NeededPoint& p : needed) {
+  std::ranges::sort(needed, std::greater{}, [](const OrbitPoint& p) { return std::tuple(p.edge, p.segment, p.at); });
+  const OrbitPoint* last = nullptr;
+  for (const OrbitPoint& p : needed) {
     if (last != nullptr && p.edge == last->edge && p.segment == last->segment && p.at > last->at - apart) continue;
     std::vector<Vec3>& polygon = polygons[p.edge];
     polygon.insert(polygon.begin() + static_cast<std::ptrdiff_t>(p.segment), p.point);

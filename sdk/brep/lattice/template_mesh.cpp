@@ -230,11 +230,11 @@ std::optional<Triangulation> own_mesh(const TopoDS_Face& face, const TemplateEdg
 struct Wanted {
   explicit Wanted(std::size_t edges) : taken(edges), coarse(edges) {}
   void insert_needed(EdgePolygons& polygons) {
-    std::erase_if(needed, [&](const NeededPoint& p) { return coarse[p.edge] || taken[p.edge]; });
+    std::erase_if(needed, [&](const OrbitPoint& p) { return coarse[p.edge] || taken[p.edge]; });
     for (const std::uint32_t edge : insert(std::move(needed), polygons)) taken[edge] = true;
   }
 
-  std::vector<NeededPoint> needed;
+  std::vector<OrbitPoint> needed;
   std::vector<bool> taken;   ///< have got points, and are to keep them
   std::vector<bool> coarse;  ///< to be divided further
 };
@@ -247,7 +247,7 @@ bool is_meshed(const TopoDS_Face& face, const TemplateEdges& kind, const Templat
   const auto unrolled = parameter_mesh(face, kind, geometry, polygons);
   if (unrolled && is_last) return true;
   if (unrolled && !unrolled->needed.empty()) {
-    wanted.needed.insert(wanted.needed.end(), unrolled->needed.begin(), unrolled->needed.end());
+    for (const NeededPoint& p : unrolled->needed) wanted.needed.push_back(of_orbit(p, kind, geometry, polygons));
     return false;
   }
   if (take_points(face, kind, geometry, polygons, wanted.taken)) return false;

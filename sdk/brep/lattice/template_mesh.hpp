@@ -9,11 +9,10 @@
 // Each edge is divided once. A face that cannot be meshed within polygons so coarse has those of its edges divided
 // further, wherever they stand.
 
-#include <array>
 #include <optional>
-#include <utility>
 #include <vector>
 
+#include "face_border.hpp"
 #include "lattice/orbit_matcher.hpp"
 #include "meso/base/run_options.hpp"
 #include "meso/brep/lattice_body.hpp"
@@ -37,10 +36,6 @@ using EdgePolygons = std::vector<std::vector<Vec3>>;
 /// The points between the ends of an edge of a kind, along that edge.
 [[nodiscard]] std::vector<Vec3> points_of(const OrbitMatcher::Match& match, const Template& geometry,
                                           const EdgePolygons& polygons);
-
-/// Two mesh points with one name are one.
-using PointName = std::pair<std::array<double, 3>, Index3>;
-[[nodiscard]] inline PointName name_of(const MeshPoint& p) { return {{p.point.x, p.point.y, p.point.z}, p.offset}; }
 
 /// Throws Standard_Failure, also where the run is to stop.
 [[nodiscard]] EdgePolygons mesh_alike(const std::vector<TemplateEdges>& kinds, const Template& geometry,
