@@ -210,6 +210,18 @@ std::vector<double> parameters_on(const TopoDS_Edge& edge, const std::vector<Vec
   return out;
 }
 
+std::vector<PolygonPoint> apart_from_last(std::vector<PolygonPoint> points) {
+  constexpr double apart = 0.02;  // of a segment
+  std::ranges::sort(points, std::greater{}, [](const PolygonPoint& p) { return std::tuple(p.edge, p.segment, p.at); });
+  std::vector<PolygonPoint> out;
+  for (const PolygonPoint& p : points) {
+    const bool is_close =
+        !out.empty() && p.edge == out.back().edge && p.segment == out.back().segment && p.at > out.back().at - apart;
+    if (!is_close) out.push_back(p);
+  }
+  return out;
+}
+
 std::optional<BorderedMesh> bordered_mesh(const TopoDS_Face& face, const Template& geometry,
                                           const std::function<EdgePoints(const TopoDS_Edge&)>& points_of) {
   std::vector<Stretch> stretches;

@@ -41,6 +41,18 @@ struct NeededPoint {
   Vec3 point;
 };
 
+/// The same, where edges have numbers.
+struct PolygonPoint {
+  std::uint32_t edge = 0;
+  std::size_t segment = 0;
+  double at = 0;
+  double parameter = 0;
+  Vec3 point;
+};
+/// Of points that are close together one is taken; the last of each edge come first, so that those that are yet to be
+/// inserted keep their segments.
+[[nodiscard]] std::vector<PolygonPoint> apart_from_last(std::vector<PolygonPoint> points);
+
 struct BorderedMesh {
   Triangulation mesh;
   double fold = 0;                  ///< as in UnrolledMesh

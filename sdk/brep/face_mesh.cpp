@@ -1,15 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "face_mesh.hpp"
 
+#include <GCPnts_TangentialDeflection.hxx>
 #include <Poly_PolygonOnTriangulation.hxx>
 #include <Standard_OutOfMemory.hxx>
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <map>
 
 #include "ellipsoid.hpp"
+#include "face_border.hpp"
 #include "fit_triangles.hpp"
 #include "plane_mesh.hpp"
+#include "unrolled_mesh.hpp"
 #include "value_geometry.hpp"
 
 namespace meso::brep {
@@ -17,6 +21,35 @@ namespace {
 
 constexpr std::size_t many_loops = 10;
 constexpr double same_parameter = 1e-9;  ///< of the edge
+
+/// Whether every segment is gone along as often in one direction as in the other: then sums of hashes cancel.
+class SegmentSum {
+ public:
+  void add(Vec3 from, Vec3 to) { add(hash(from), hash(to)); }
+  void add(const Triangulation& mesh) {
+    hashes_.clear();
+    for (const MeshPoint& p : mesh.points) hashes_.push_back(hash(p.point));
+    for (const auto& t : mesh.triangles)
+      for (std::size_t k = 0; k < 3; ++k) add(hashes_[t[k]], hashes_[t[(k + 1) % 3]]);
+  }
+  [[nodiscard]] bool is_zero() const { return sum_ == 0; }
+
+ private:
+  static std::uint64_t hash(Vec3 p) {
+    std::uint64_t h = 0;
+    for (const double c : {p.x, p.y, p.z})
+      h = std::rotl((h ^ std::bit_cast<std::uint64_t>(c + 0.0)) * 0x9e3779b97f4a7c15u, 29);
+    return h;
+  }
+  void add(std::uint64_t a, std::uint64_t b) {
+    if (a == b) return;
+    const std::uint64_t mixed = (std::min(a, b) * 0xbf58476d1ce4e5b9u) ^ std::rotl(std::max(a, b), 31);
+    sum_ += a < b ? mixed : 0 - mixed;
+  }
+
+  std::vector<std::uint64_t> hashes_;
+  std::uint64_t sum_ = 0;
+};
 
 class FaceMesher {
  public:
@@ -42,16 +75,16 @@ class FaceMesher {
     for (std::size_t f = 0; f < faces_.size(); ++f)
       if (!is_plane[f] && !(ellipsoids[f] = ellipsoid_of(faces_[f]))) builder.Add(others, faces_[f]);
     BRepMesh_IncrementalMesh(others, tolerance_.deflection_mm, false, tolerance_.angle, true);
-    std::vector<std::vector<Border>> borders(faces_.size());
+    std::vector<Made> made;
     for (std::size_t f = 0; f < faces_.size(); ++f)
       if (ellipsoids[f])
         geometry_.faces[f].mesh = mesh_of(*ellipsoids[f], tolerance_.deflection_mm, tolerance_.angle);
       else if (!is_plane[f])
-        borders[f] = taken_from(faces_[f], geometry_.faces[f].mesh);
-    for (const auto& of_face : borders)
-      for (const Border& border : of_face) share(border);
-    for (std::size_t f = 0; f < faces_.size(); ++f)
-      if (!is_plane[f] && !ellipsoids[f]) settle(borders[f], geometry_.faces[f].mesh);
+        made.push_back(made_of(f));
+    for (const Made& face : made)
+      for (const Border& border : face.borders) share(border);
+    while (!settle(made)) {
+    }
     for (std::size_t f = 0; f < faces_.size(); ++f)
       if (is_plane[f]) geometry_.faces[f].mesh = between_loops(f);
     if (!is_closed()) return false;
@@ -62,28 +95,152 @@ class FaceMesher {
   }
 
  private:
-  /// Every segment is gone along as often in one direction as in the other: sums of hashes cancel.
-  [[nodiscard]] bool is_closed() const {
-    const auto hash = [](Vec3 p) {
-      std::uint64_t h = 0;
-      for (const double c : {p.x, p.y, p.z})
-        h = std::rotl((h ^ std::bit_cast<std::uint64_t>(c + 0.0)) * 0x9e3779b97f4a7c15u, 29);
-      return h;
-    };
-    std::uint64_t sum = 0;
-    std::vector<std::uint64_t> hashes;
-    for (const FaceTemplate& face : geometry_.faces) {
-      hashes.clear();
-      for (const MeshPoint& p : face.mesh.points) hashes.push_back(hash(p.point));
-      for (const auto& t : face.mesh.triangles)
-        for (std::size_t k = 0; k < 3; ++k) {
-          const std::uint64_t a = hashes[t[k]], b = hashes[t[(k + 1) % 3]];
-          if (a == b) continue;
-          const std::uint64_t mixed = (std::min(a, b) * 0xbf58476d1ce4e5b9u) ^ std::rotl(std::max(a, b), 31);
-          sum += a < b ? mixed : 0 - mixed;
-        }
+  /// The points of one edge in the triangles of one face, along the edge's forward direction.
+  struct Border {
+    std::size_t edge = 0;  ///< index in edges_
+    bool reversed = false;
+    std::vector<std::uint32_t> nodes;
+    std::vector<double> at;  ///< parameters
+    std::vector<MeshPoint> points;
+  };
+
+  /// What OpenCASCADE has made of a face; nothing where that does not reach its edges, or is folded.
+  struct Made {
+    std::size_t face = 0;
+    bool is_lost = false;
+    Triangulation mesh;
+    std::vector<Border> borders;
+  };
+
+  [[nodiscard]] Made made_of(std::size_t face) const {
+    Made out{.face = face};
+    try {
+      out.borders = taken_from(faces_[face], out.mesh);
+    } catch (const Standard_Failure&) {
+      out.is_lost = true;
+      out.borders.clear();
     }
-    return sum == 0;
+    return out;
+  }
+
+  /// False where more faces are lost: what is put in their place may need points on edges of the others.
+  [[nodiscard]] bool settle(std::vector<Made>& made) {
+    insert_needed(made);
+    bool is_done = true;
+    for (Made& face : made) {
+      Triangulation& mesh = geometry_.faces[face.face].mesh;
+      if (face.is_lost) {
+        auto between = between_edges(faces_[face.face]);
+        if (!between) throw Standard_Failure("a face could not be meshed");
+        mesh = std::move(between->mesh);
+        continue;
+      }
+      mesh = face.mesh;
+      try {
+        settle(face.borders, mesh);
+        face.is_lost = !ends_at_edges(face.borders, mesh) || is_folded(face);
+      } catch (const Standard_Failure&) {
+        face.is_lost = true;
+      }
+      is_done = is_done && !face.is_lost;
+    }
+    return is_done;
+  }
+
+  /// Points beside those that a chord of a lost face would pass.
+  void insert_needed(const std::vector<Made>& made) {
+    constexpr int most_rounds = 4;
+    for (int round = 0; round < most_rounds; ++round) {
+      std::vector<PolygonPoint> needed;
+      for (const Made& face : made) {
+        if (!face.is_lost) continue;
+        if (const auto mesh = between_edges(faces_[face.face]))
+          for (const NeededPoint& p : mesh->needed)
+            needed.push_back({.edge = static_cast<std::uint32_t>(edges_.FindIndex(p.edge)),
+                              .segment = p.segment,
+                              .at = p.at,
+                              .parameter = p.parameter,
+                              .point = p.point});
+      }
+      if (needed.empty()) return;
+      for (const PolygonPoint& p : apart_from_last(std::move(needed))) {
+        const auto at = static_cast<std::ptrdiff_t>(p.segment) + 1;
+        edge_points_[p.edge].insert(edge_points_[p.edge].begin() + at, p.point);
+        edge_at_[p.edge].insert(edge_at_[p.edge].begin() + at, p.parameter);
+      }
+    }
+  }
+
+  [[nodiscard]] std::optional<BorderedMesh> between_edges(const TopoDS_Face& face) {
+    return bordered_mesh(face, geometry_, [&](const TopoDS_Edge& edge) {
+      const auto e = static_cast<std::size_t>(edges_.FindIndex(edge));
+      if (edge_points_[e].empty()) share(divided(TopoDS::Edge(edges_(static_cast<int>(e)).Oriented(TopAbs_FORWARD))));
+      EdgePoints out{.points = {}, .parameters = edge_at_[e]};
+      for (const Vec3 p : edge_points_[e]) out.points.push_back({.point = p});
+      return out;
+    });
+  }
+
+  /// An edge between lost faces only.
+  [[nodiscard]] Border divided(const TopoDS_Edge& edge) const {
+    Border out{.edge = static_cast<std::size_t>(edges_.FindIndex(edge))};
+    const auto add = [&](double parameter, Vec3 point) {
+      out.at.push_back(parameter);
+      out.points.push_back({.point = point});
+    };
+    double first = 0, last = 0;
+    BRep_Tool::Range(edge, first, last);
+    if (BRep_Tool::Degenerated(edge)) {
+      add(first, {});
+      add(last, {});
+      return out;
+    }
+    const GCPnts_TangentialDeflection points(BRepAdaptor_Curve(edge), tolerance_.angle, tolerance_.deflection_mm, 3);
+    for (int i = 1; i <= points.NbPoints(); ++i) add(points.Parameter(i), to_vec(points.Value(i)));
+    return out;
+  }
+
+  [[nodiscard]] bool ends_at_edges(const std::vector<Border>& borders, const Triangulation& mesh) const {
+    SegmentSum sum;
+    sum.add(mesh);
+    for (const Border& border : borders) {
+      const std::vector<Vec3>& points = edge_points_[border.edge];
+      for (std::size_t k = 0; k + 1 < points.size(); ++k)
+        sum.add(points[border.reversed ? k : k + 1], points[border.reversed ? k + 1 : k]);
+    }
+    return sum.is_zero();
+  }
+
+  /// As its triangles are, not as the parameters are that they were made in.
+  [[nodiscard]] bool is_folded(const Made& made) const {
+    const Triangulation& mesh = geometry_.faces[made.face].mesh;
+    const TopoDS_Face& face = faces_[made.face];
+    TopLoc_Location location;
+    const Handle(Poly_Triangulation) own = BRep_Tool::Triangulation(face, location);
+    if (std::holds_alternative<Plane>(geometry_.faces[made.face].surface) || !own->HasUVNodes()) return false;
+    std::vector<BorderPoint> points;
+    for (int i = 1; i <= own->NbNodes(); ++i) {
+      const gp_Pnt2d at = own->UVNode(i);
+      points.push_back({mesh.points[static_cast<std::size_t>(i) - 1].point, {at.X(), at.Y()}});
+    }
+    // Of halves on the border, which have no parameters, the folds are those of the whole.
+    std::vector<std::array<std::uint32_t, 3>> triangles;
+    for (auto t : mesh.triangles) {
+      if (face.Orientation() == TopAbs_REVERSED) std::swap(t[1], t[2]);
+      if (std::ranges::all_of(t, [&](std::uint32_t p) { return p < points.size(); })) triangles.push_back(t);
+    }
+    double edges_known_to = 0;
+    for (const Border& border : made.borders)
+      edges_known_to =
+          std::fmax(edges_known_to, BRep_Tool::Tolerance(TopoDS::Edge(edges_(static_cast<int>(border.edge)))));
+    return fold_of(BRep_Tool::Surface(face), points, triangles) >
+           std::fmax(1e-3 * tolerance_.deflection_mm, 2 * edges_known_to);
+  }
+
+  [[nodiscard]] bool is_closed() const {
+    SegmentSum sum;
+    for (const FaceTemplate& face : geometry_.faces) sum.add(face.mesh);
+    return sum.is_zero();
   }
 
   static bool has_many_loops(const FaceTemplate& face) {
@@ -142,14 +299,6 @@ class FaceMesher {
     return mesh;
   }
 
-  /// The points of one edge in the triangles of one face, along the edge's forward direction.
-  struct Border {
-    std::size_t edge = 0;  ///< index in edges_
-    std::vector<std::uint32_t> nodes;
-    std::vector<double> at;  ///< parameters
-    std::vector<MeshPoint> points;
-  };
-
   /// OpenCASCADE's triangles, and where they end.
   std::vector<Border> taken_from(const TopoDS_Face& face, Triangulation& result) const {
     TopLoc_Location location;
@@ -173,7 +322,9 @@ class FaceMesher {
       if (polygon.IsNull() || !polygon->HasParameters()) throw Standard_Failure("an edge could not be meshed");
       Border& border = borders.emplace_back();
       border.edge = static_cast<std::size_t>(edges_.FindIndex(edge));
+      border.reversed = edge.Orientation() == TopAbs_REVERSED;
       for (int k = 1; k <= polygon->NbNodes(); ++k) {
+        if (polygon->Node(k) < 1) throw Standard_Failure("an edge could not be meshed");
         border.nodes.push_back(static_cast<std::uint32_t>(polygon->Node(k) - 1));
         border.at.push_back(polygon->Parameter(k));
         border.points.push_back(result.points[border.nodes.back()]);

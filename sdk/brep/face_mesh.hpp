@@ -4,7 +4,8 @@
 //
 // Ellipsoids have a formula (ellipsoid.hpp); plane faces with many loops get a Delaunay triangulation between the
 // points of their edges (plane_mesh.hpp), because OpenCASCADE's mesher takes time quadratic in the loops of one face;
-// all other faces are left to it.
+// all other faces are left to it. Where it leaves points of edges out, fails or turns triangles over, as in faces
+// narrower than chords are off, they are made between the points of the edges (face_border.hpp).
 
 #include "meso/brep/body.hpp"
 #include "occt.hpp"

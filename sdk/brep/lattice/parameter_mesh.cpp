@@ -2,7 +2,6 @@
 #include "lattice/parameter_mesh.hpp"
 
 #include <algorithm>
-#include <tuple>
 
 #include "meso/brep/instance_map.hpp"
 #include "meso/brep/placement.hpp"
@@ -40,8 +39,8 @@ std::optional<BorderedMesh> parameter_mesh(const TopoDS_Face& face, const Templa
                        [&](const TopoDS_Edge& edge) { return named_points(edge, kind, geometry, polygons); });
 }
 
-OrbitPoint of_orbit(const NeededPoint& p, const TemplateEdges& kind, const Template& geometry,
-                    const EdgePolygons& polygons) {
+PolygonPoint of_orbit(const NeededPoint& p, const TemplateEdges& kind, const Template& geometry,
+                      const EdgePolygons& polygons) {
   const OrbitMatcher::Match& match = kind.match_of(p.edge);
   return {.edge = match.edge,
           .segment = match.flipped ? polygons[match.edge].size() - p.segment : p.segment,
@@ -49,18 +48,12 @@ OrbitPoint of_orbit(const NeededPoint& p, const TemplateEdges& kind, const Templ
           .point = p.point - cell_origin(geometry, match.offset)};
 }
 
-std::set<std::uint32_t> insert(std::vector<OrbitPoint> needed, EdgePolygons& polygons) {
-  constexpr double apart = 0.02;  // of a segment
+std::set<std::uint32_t> insert(std::vector<PolygonPoint> needed, EdgePolygons& polygons) {
   std::set<std::uint32_t> out;
-  // The last first, so that those before it keep their numbers.
-  std::ranges::sort(needed, std::greater{}, [](const OrbitPoint& p) { return std::tuple(p.edge, p.segment, p.at); });
-  const OrbitPoint* last = nullptr;
-  for (const OrbitPoint& p : needed) {
-    if (last != nullptr && p.edge == last->edge && p.segment == last->segment && p.at > last->at - apart) continue;
+  for (const PolygonPoint& p : apart_from_last(std::move(needed))) {
     std::vector<Vec3>& polygon = polygons[p.edge];
     polygon.insert(polygon.begin() + static_cast<std::ptrdiff_t>(p.segment), p.point);
     out.insert(p.edge);
-    last = &p;
   }
   return out;
 }

@@ -13,17 +13,11 @@ namespace meso::brep {
 [[nodiscard]] std::optional<BorderedMesh> parameter_mesh(const TopoDS_Face& face, const TemplateEdges& kind,
                                                          const Template& geometry, const EdgePolygons& polygons);
 
-/// A point that an edge of the template needs between two of its own.
-struct OrbitPoint {
-  std::uint32_t edge = 0;
-  std::size_t segment = 0;  ///< of its polygon, counted from vertex 0
-  double at = 0;            ///< along the segment, 0 to 1
-  Vec3 point;
-};
-[[nodiscard]] OrbitPoint of_orbit(const NeededPoint& p, const TemplateEdges& kind, const Template& geometry,
-                                  const EdgePolygons& polygons);
+/// In the numbers of the template's edges.
+[[nodiscard]] PolygonPoint of_orbit(const NeededPoint& p, const TemplateEdges& kind, const Template& geometry,
+                                    const EdgePolygons& polygons);
 
-/// Of points that are close together one is taken. The edges that have new points.
-std::set<std::uint32_t> insert(std::vector<OrbitPoint> needed, EdgePolygons& polygons);
+/// The edges that have new points.
+std::set<std::uint32_t> insert(std::vector<PolygonPoint> needed, EdgePolygons& polygons);
 
 }  // namespace meso::brep

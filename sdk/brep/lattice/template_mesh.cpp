@@ -230,11 +230,11 @@ std::optional<Triangulation> own_mesh(const TopoDS_Face& face, const TemplateEdg
 struct Wanted {
   explicit Wanted(std::size_t edges) : taken(edges), coarse(edges) {}
   void insert_needed(EdgePolygons& polygons) {
-    std::erase_if(needed, [&](const OrbitPoint& p) { return coarse[p.edge] || taken[p.edge]; });
+    std::erase_if(needed, [&](const PolygonPoint& p) { return coarse[p.edge] || taken[p.edge]; });
     for (const std::uint32_t edge : insert(std::move(needed), polygons)) taken[edge] = true;
   }
 
-  std::vector<OrbitPoint> needed;
+  std::vector<PolygonPoint> needed;
   std::vector<bool> taken;   ///< have got points, and are to keep them
   std::vector<bool> coarse;  ///< to be divided further
 };
