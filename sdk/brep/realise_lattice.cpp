@@ -318,35 +318,58 @@ Thickness strut_thickness(const eval::CellStream& cells, DiagnosticSink& sink) {
 
 namespace {
 
-/// Where a line of a body ends in the pole of a ball, or a face touches one, a second attempt keeps poles out of the
-/// cell: sooner than the cell as it is in all ways.
+/// Of a cell that as_varied takes, boxes at the rim of the pattern.
+constexpr FusedLimit few_fused{.most = 60, .is_told = false};
+
+/// One way to make a lattice that a body cuts.
+struct ClipAttempt {
+  CellShape cell;
+  CellClipper::Ways ways = CellClipper::Ways::all;
+  std::optional<std::size_t> again{};  ///< worth it if that attempt was given up
+};
+
+/// Where a line of a body ends in the pole of a ball, or a face touches one, the second attempt keeps poles out of the
+/// cell: sooner than the cell as it is in all ways. The third has cells put together, whose balls have poles in several
+/// places.
+std::vector<ClipAttempt> clip_attempts(const CellShape& cell) {
+  using Ways = CellClipper::Ways;
+  const auto poles_aside = with_poles_aside(cell);
+  if (!poles_aside) return {{cell}};
+  std::vector<ClipAttempt> out{{cell, Ways::first}, {*poles_aside}};
+  if (auto varied = as_varied(cell)) out.push_back({std::move(*varied)});
+  out.push_back({cell, Ways::all, 0});
+  return out;
+}
+
 std::optional<ClippedLattice> clipped_lattice(const Found& found, const Index3& last, const LatticeRequest& request,
                                               const SolidContext& context) {
-  using Ways = CellClipper::Ways;
-  const auto attempt = [&](const CellShape& cell, Ways ways, DiagnosticSink& sink) {
+  std::vector<DiagnosticSink> told;
+  std::vector<bool> is_given_up;
+  std::optional<ClippedLattice> made;
+  for (const ClipAttempt& attempt : clip_attempts(found.cell)) {
+    if (made || context.run.should_stop() || (!told.empty() && told.back().has_errors())) break;
+    told.emplace_back();
+    is_given_up.push_back(false);
+    if (attempt.again && !is_given_up[*attempt.again]) continue;
     const ClipOptions options{.mesh = request.mesh,
                               .reuse = true,
                               .block = found.lattice.block,
                               .pieces = request.pieces,
                               .added = found.added,
-                              .fused = request.fused,
-                              .ways = ways};
-    return clipped_lattice_body(cell, last, found.body, options, context.run, sink);
-  };
-  const auto poles_aside = with_poles_aside(found.cell);
-  DiagnosticSink first, second;
-  auto made = attempt(found.cell, poles_aside ? Ways::first : Ways::all, first);
-  const bool is_given_up = made && made->is_given_up;
-  if (is_given_up) made.reset();
-  bool is_second = false;
-  if (!made && poles_aside && !first.has_errors() && !context.run.should_stop()) {
-    made = attempt(*poles_aside, Ways::all, second);
-    is_second = made || context.run.should_stop();
-    if (!is_second && is_given_up) made = attempt(found.cell, Ways::all, first);
+                              .fused = attempt.cell.varied && !found.cell.varied ? few_fused : request.fused,
+                              .ways = attempt.ways};
+    made = clipped_lattice_body(attempt.cell, last, found.body, options, context.run, told.back());
+    is_given_up.back() = made && made->is_given_up;
+    if (is_given_up.back()) made.reset();
   }
-  const DiagnosticSink& told = is_second ? second : first;
-  for (const Diagnostic& d : told.diagnostics()) context.sink.report(d);
-  if (is_given_up && !made && told.diagnostics().empty())  // stopped between the two
+  // Those that came last got farthest: their reason names a cell sooner than that of the first.
+  const DiagnosticSink* helps = nullptr;
+  for (const DiagnosticSink& sink : told)
+    if (!sink.diagnostics().empty()) helps = &sink;
+  if (made) helps = &told.back();
+  if (helps != nullptr)
+    for (const Diagnostic& d : helps->diagnostics()) context.sink.report(d);
+  if (!made && context.run.should_stop() && (helps == nullptr || helps != &told.back()))  // between two
     context.sink.report({.code = context.run.out_of_time() ? Code::limit_time : Code::cancelled});
   return made;
 }

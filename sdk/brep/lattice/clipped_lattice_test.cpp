@@ -8,6 +8,7 @@
 #include <map>
 #include <numbers>
 #include <random>
+#include <span>
 
 #include "lattice/primitive_field.hpp"
 #include "lattice/test_cells.hpp"
@@ -111,6 +112,22 @@ TEST(ClippedLattice, ConcaveBodies) {
   expect_clean(made);
   const auto [volume, error] = counted({{1, 1, 0}, {13, 13, 10}}, [](Vec3 p) { return p.x < 6 || p.y < 7; });
   EXPECT_NEAR(made.volume, volume, 4 * error);
+}
+
+// The line of contact begins where the strut in the plane ends: of three places on it one is beyond the strut.
+TEST(ClippedLattice, AHoleMayTouchAPlaneBetweenBoxes) {
+  constexpr double radius = 1.3;
+  for (const double from : {0.0, 5.8}) {
+    const Vec3 axis{5.3, 5 - radius, from};
+    const TopoDS_Shape hole = BRepPrimAPI_MakeCylinder(gp_Ax2(to_pnt(axis), gp::DZ()), radius, 20).Solid();
+    const Vec3 low{1.1, 1.2, 1.3}, high{14, 9, 9};
+    const Made made = clipped({solid_in(BRepAlgoAPI_Cut(box(low, high), hole).Shape())}, {2, 1, 1});
+    expect_clean(made);
+    const auto [volume, error] =
+        counted({low, high}, [&](Vec3 p) { return p.z < from || std::hypot(p.x - axis.x, p.y - axis.y) > radius; });
+    EXPECT_NEAR(made.volume, volume, 4 * error);
+    for (const std::size_t more : std::span(made.lattice->clip.attempts).subspan(1)) EXPECT_EQ(more, 0u);
+  }
 }
 
 /// Directed segments without a partner, and the volume within; triangles without area are failures.

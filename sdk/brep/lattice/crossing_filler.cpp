@@ -33,6 +33,14 @@ Vec3 normal_at(const TopoDS_Face& face, const gp_Pnt& p, const Handle(IntTools_C
   return area > 0 ? across / area : Vec3{};
 }
 
+/// Angle between two faces at a point of both, as its sine; nothing beyond the parameters of one of them.
+std::optional<double> angle_at(const TopoDS_Face& a, const TopoDS_Face& b, const gp_Pnt& p,
+                               const Handle(IntTools_Context) & context) {
+  const Vec3 n = normal_at(a, p, context), m = normal_at(b, p, context);
+  if (norm(n) == 0 || norm(m) == 0) return {};
+  return norm(cross(n, m));
+}
+
 /// From the points that its surfaces share. What OpenCASCADE calls a tolerance is how far it is from the surfaces,
 /// which is less where they meet at a small angle. Endless where they nearly touch.
 double distance_of(const SharedCurve& on, double size) {
@@ -77,12 +85,15 @@ class NearPairs : public BOPDS_Iterator {
 
 bool touch_along(const TopoDS_Face& a, const TopoDS_Face& b, const CurveSpan& span,
                  const Handle(IntTools_Context) & context) {
-  for (const double at : {0.25, 0.5, 0.75}) {
-    const gp_Pnt p = span.curve->Value((1 - at) * span.from + at * span.to);
-    const Vec3 n = normal_at(a, p, context), m = normal_at(b, p, context);
-    if (norm(n) == 0 || norm(m) == 0 || norm(cross(n, m)) > parallel) return false;
+  constexpr int places = 16;  // a curve may go on beyond its faces, and far
+  int told = 0;
+  for (int i = 1; i < places && told < 3; ++i) {
+    const double at = static_cast<double>(i * 5 % places) / places;
+    const auto angle = angle_at(a, b, span.curve->Value((1 - at) * span.from + at * span.to), context);
+    if (angle && *angle > parallel) return false;
+    told += angle.has_value();
   }
-  return true;
+  return told > 0;
 }
 
 void CrossingFiller::Init(const Message_ProgressRange& range) {

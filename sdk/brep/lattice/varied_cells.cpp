@@ -2,6 +2,7 @@
 #include "lattice/varied_cells.hpp"
 
 #include <algorithm>
+#include <numeric>
 
 #include "lattice/primitive_field.hpp"
 #include "meso/brep/instance_map.hpp"
@@ -89,6 +90,18 @@ std::vector<std::uint32_t> VariedBoxes::parts_of(const Index3& box, const std::f
   for (const Reach::Neighbour& neighbour : reach_.neighbours) add_from(neighbour.shift);
   std::ranges::sort(parts);
   return parts;
+}
+
+std::optional<CellShape> as_varied(const CellShape& cell) {
+  if (cell.varied || cell.primitives.empty()) return {};
+  std::vector<std::uint32_t> all(cell.primitives.size());
+  std::iota(all.begin(), all.end(), 0u);
+  CellShape out = cell;
+  out.varied = std::make_shared<const VariedCells>(std::move(all));
+  VariedBoxes boxes(out);
+  const auto parts = boxes.parts_of({}, [](const Index3&) { return true; });
+  if (!is_put_together(out, boxes.reach(), parts)) return {};
+  return out;
 }
 
 }  // namespace meso::brep

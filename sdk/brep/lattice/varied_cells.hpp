@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <functional>
 #include <map>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -18,18 +19,22 @@ namespace meso::brep {
 class VariedCells {
  public:
   explicit VariedCells(const Index3& last) : last_(last), cells_(slot(last) + 1) {}
+  /// Any number of cells, all alike.
+  explicit VariedCells(std::vector<std::uint32_t> of_each) : are_alike_(true), cells_{std::move(of_each)} {}
 
   void set(const Index3& cell, std::vector<std::uint32_t> primitives) { cells_[slot(cell)] = std::move(primitives); }
   [[nodiscard]] const std::vector<std::uint32_t>& of(const Index3& cell) const { return cells_[slot(cell)]; }
 
  private:
   [[nodiscard]] std::size_t slot(const Index3& cell) const {
+    if (are_alike_) return 0;
     const auto at = [&](std::size_t i) { return static_cast<std::size_t>(cell[i]); };
     const auto extent = [&](std::size_t i) { return static_cast<std::size_t>(last_[i]) + 1; };
     return (at(0) * extent(1) + at(1)) * extent(2) + at(2);
   }
 
-  Index3 last_;
+  Index3 last_{};
+  bool are_alike_ = false;
   std::vector<std::vector<std::uint32_t>> cells_;
 };
 
@@ -67,5 +72,9 @@ class VariedBoxes {
   Reach reach_;
   PrimitiveTable placed_;  ///< parallel to the parts
 };
+
+/// A cell that all boxes have, as if they varied, so that boxes are put together without a boolean, and in several
+/// ways. Nothing where one in the midst of others takes a boolean all the same.
+[[nodiscard]] std::optional<CellShape> as_varied(const CellShape& cell);
 
 }  // namespace meso::brep
