@@ -75,7 +75,13 @@ constexpr Synonym synonyms[] = {{"sphere", "ball"},
                                 {"discard", "drop"},
                                 {"define", "def"},
                                 {"name", "def"},
-                                {"use", "recall"}};
+                                {"use", "recall"},
+                                {"--samples", "-s"},
+                                {"-n", "-s"},
+                                {"--spacing", "-s"},
+                                {"--bounds", "-b"},
+                                {"--box", "-b"},
+                                {"--output", "-o"}};
 
 std::string solids(std::size_t n) { return std::to_string(n) + (n == 1 ? " solid" : " solids"); }
 
@@ -332,12 +338,18 @@ class ProgramParser {
   }
 
   bool unknown(const Word& word) {
+    // A shell's quotation marks around all of them.
+    if (const std::size_t space = word.text.find(' '); space != std::string::npos)
+      if (const std::string first = word.text.substr(0, space); find_vocable(first) != nullptr)
+        return fail(word, Code::sdf_unknown_word,
+                    {word.text, "; leave out the quotation marks: each word is one argument"});
     return fail(word, Code::sdf_unknown_word, {word.text, suggestion(nearest_word(word.text))});
   }
 
   /// With what the word takes: who does not know its name does not know that either.
   static std::string suggestion(const std::string& near) {
     if (near.empty()) return "";
+    if (near == "-s") return "; did you mean '-s'? Write: -s n, samples in all, or -s nx,ny,nz";
     const Vocable* vocable = find_vocable(near);
     const std::string meant = "; did you mean '" + near + "'?";
     if (vocable == nullptr || vocable->argument.empty()) return meant;

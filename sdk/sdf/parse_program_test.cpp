@@ -174,6 +174,8 @@ TEST(Language, WordsOfOtherProgramsAreUnderstoodWell) {
               HasSubstr("there is no word 'translate'; did you mean 'move'? Write: move dx,dy,dz (stack depth 1)"));
   EXPECT_THAT(parse("ball roate 0,0,1 pi").text(), HasSubstr("did you mean 'rotate'? Write: rotate x,y,z a"));
   EXPECT_THAT(parse("tmps.gyroid").text(), HasSubstr("did you mean 'tpms.gyroid'?"));
+  EXPECT_THAT(parse("ball --samples 1000").text(), HasSubstr("did you mean '-s'? Write: -s n"));
+  EXPECT_THAT(parse("'ball scale 2'").text(), HasSubstr("leave out the quotation marks"));
   const Files files{{"bom.txt",
                      "\xEF\xBB\xBF"
                      "ball # with a byte order mark"}};

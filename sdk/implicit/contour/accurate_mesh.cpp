@@ -46,11 +46,17 @@ std::vector<char> beside_wedges(const TriangleMesh& mesh) {
   return beside;
 }
 
-/// As many digits as a reader wants.
-std::string rounded(double value) {
+std::string rounded(double value, int digits = 4) {
   std::array<char, 32> text{};
-  const auto end = std::to_chars(text.data(), text.data() + text.size(), value, std::chars_format::general, 4).ptr;
+  const auto end = std::to_chars(text.data(), text.data() + text.size(), value, std::chars_format::general, digits).ptr;
   return {text.data(), end};
+}
+
+/// As many digits as a reader wants, and as tell it from the bound that it leaves.
+std::string rounded_beyond(double value, double bound) {
+  for (int digits = 4; digits < 17; ++digits)
+    if (std::string text = rounded(value, digits); parse_number(text).value_or(0) > bound) return text;
+  return format_number(value);
 }
 
 /// A mesh in memory counts as such.
@@ -84,7 +90,9 @@ class Making {
   Look look_at(const TriangleMesh& mesh, double spacing);
   [[nodiscard]] static double farthest_on(const Grid& grid);
   bool resolve(Grid grid);
-  bool refine();
+  enum class Refined { done, stopped, too_large };
+  Refined refine();
+  bool refine_or_tell();
   bool take_refined();
   bool thin();
   bool simplify();
@@ -96,6 +104,8 @@ class Making {
   [[nodiscard]] double triangles_of_finer(double distance) const;
   void expect(double triangles);
   [[nodiscard]] bool fits(double triangles);
+  /// The same; tells where it does not.
+  [[nodiscard]] bool affords(double triangles);
   // What normals tell, and what lies between the points that are looked at, is off by a part of it.
   [[nodiscard]] double aim() const { return is_smooth() ? 0.7 * options_.tolerance : options_.tolerance; }
   [[nodiscard]] bool is_smooth() const { return options_.tolerance > 0 && !options_.sharp; }
@@ -170,7 +180,7 @@ double bytes_for(double triangles) {
 Diagnostic Making::not_reached(double bound) const {
   const Vec3 p = far_.place;
   return {.code = Code::tolerance_not_reached,
-          .args = {rounded(out_.distance), format_number(bound), std::to_string(far_.triangles),
+          .args = {rounded_beyond(out_.distance, bound), format_number(bound), std::to_string(far_.triangles),
                    rounded(p.x) + " " + rounded(p.y) + " " + rounded(p.z)}};
 }
 
@@ -199,7 +209,11 @@ void Making::pass_on(const DiagnosticSink& told) {
 
 bool Making::fits(double triangles) {
   expect(triangles);
-  if (bytes_for(triangles) <= static_cast<double>(run_.max_memory_bytes)) return true;
+  return bytes_for(triangles) <= static_cast<double>(run_.max_memory_bytes);
+}
+
+bool Making::affords(double triangles) {
+  if (fits(triangles)) return true;
   diagnostics_.report(takes(triangles));
   return false;
 }
@@ -237,7 +251,7 @@ bool Making::is_affordable(const Grid& coarse) {
   }
   const double triangles = times / static_cast<double>(middles.size()) * static_cast<double>(mesh.triangles.size());
   expect(triangles);
-  return bytes_for(triangles) <= unsure * static_cast<double>(run_.max_memory_bytes) || fits(triangles);
+  return bytes_for(triangles) <= unsure * static_cast<double>(run_.max_memory_bytes) || affords(triangles);
 }
 
 // Some triangles of a mesh, spread over all of it, are looked at: whether they face as the field does there, and how
@@ -321,12 +335,12 @@ bool Making::resolve(Grid grid) {
                                  : std::clamp(std::sqrt(look.astray / few_astray), 1.4, 2.0);
     grid = with_spacing(grid.box, spacing / finer);
   }
-  if (bytes_for(grid_triangles_) > static_cast<double>(run_.max_memory_bytes)) return fits(expected_);
+  if (bytes_for(grid_triangles_) > static_cast<double>(run_.max_memory_bytes)) return affords(expected_);
   measure(std::move(out_.mesh), true, options_.tolerance);
   return go_on();
 }
 
-bool Making::refine() {
+Making::Refined Making::refine() {
   constexpr int most_rounds = 24;
   const double aim = this->aim();
   const double longer = std::max(1.0, refinable_->distance() / aim);
@@ -336,7 +350,7 @@ bool Making::refine() {
   for (int round = 0; round < most_rounds; ++round) {
     run_.report("refining", static_cast<double>(round) / most_rounds);
     if (!fits(std::max(refinable_->triangles_for(aim), static_cast<double>(refinable_->mesh().triangles.size()))))
-      return false;
+      return Refined::too_large;
     // Not at once: creases are better.
     refinable_->merge(aim);
     refinable_->measure(aim);
@@ -344,7 +358,7 @@ bool Making::refine() {
     const std::size_t halved = refinable_->refine(aim);
     if (halved == 0 && refinable_->normals_were_right(options_.tolerance)) break;
     refinable_->measure(aim);
-    if (!go_on()) return false;
+    if (!go_on()) return Refined::stopped;
     if (const double left = refinable_->distance(); left > options_.tolerance && left > 0.7 * left_before)
       finer_takes_ = std::max(finer_takes_, triangles_of_finer(left));  // no refining mends that
     left_before = refinable_->distance();
@@ -355,7 +369,13 @@ bool Making::refine() {
       patience = std::max(patience, round + 4);
     if (round >= patience && halved >= before[static_cast<std::size_t>(round - 4)]) break;
   }
-  return go_on();
+  return go_on() ? Refined::done : Refined::stopped;
+}
+
+bool Making::refine_or_tell() {
+  const Refined refined = refine();
+  if (refined == Refined::too_large) diagnostics_.report(takes(expected_));
+  return refined == Refined::done;
 }
 
 bool Making::to_tolerance(const Grid& first) {
@@ -370,7 +390,7 @@ bool Making::to_tolerance(const Grid& first) {
     out_.distance = farthest_on(out_.grid);
     return true;
   }
-  if (!refine() || !take_refined() || (spares_ && !thin())) return false;
+  if (!refine_or_tell() || !take_refined() || (spares_ && !thin())) return false;
   if (out_.distance > options_.tolerance) diagnostics_.report(not_reached(options_.tolerance));
   return true;
 }
@@ -415,7 +435,7 @@ bool Making::take_refined() {
     if (!(finer >= least_finer)) break;
     if (!contour_on(with_spacing(out_.grid.box, largest_spacing(out_.grid) / finer))) return false;
     measure(std::move(out_.mesh), true, options_.tolerance);
-    if (!go_on() || !refine()) return false;
+    if (!go_on() || !refine_or_tell()) return false;
   }
   out_ = std::move(best);
   if (out_.distance <= options_.tolerance || !lacks_memory) return true;
@@ -437,7 +457,10 @@ bool Making::thin() {
     run_.report("simplifying", static_cast<double>(attempt) / most_attempts);
     if (!simplify_mesh(out_.mesh, out_.grid.box, share * options_.tolerance, run_, kept)) return go_on();
     measure(std::move(out_.mesh), false, options_.tolerance);
-    if (!go_on() || !refine()) return false;
+    if (!go_on()) return false;
+    const Refined refined = refine();
+    if (refined == Refined::stopped) return false;
+    if (refined == Refined::too_large) break;
     out_.distance = refinable_->distance();
     if (static_cast<double>(refinable_->mesh().triangles.size()) >
         least_gain * static_cast<double>(whole.mesh.triangles.size()))

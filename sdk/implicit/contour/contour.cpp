@@ -24,16 +24,6 @@ namespace {
 // With the plane below it, a slab of 16.
 constexpr std::size_t brick_planes = 15;
 
-bool fits(const Grid& grid, std::uint64_t bytes, std::string_view purpose, const RunOptions& run,
-          DiagnosticSink& diagnostics) {
-  if (bytes <= run.max_memory_bytes) return true;
-  const auto mebibytes = [](std::uint64_t n) { return std::to_string((n + (std::uint64_t{1} << 20) - 1) >> 20); };
-  diagnostics.report({.code = Code::limit_grid_memory,
-                      .args = {std::to_string(grid.node_count()), mebibytes(bytes), std::string(purpose),
-                               mebibytes(run.max_memory_bytes)}});
-  return false;
-}
-
 std::size_t bricks_of(const Grid& grid) {
   return (static_cast<std::size_t>(grid.nodes[2]) + brick_planes) / brick_planes;
 }
@@ -57,8 +47,9 @@ bool memory_fits(const Grid& grid, bool signs_only, std::uint64_t held, const Ru
       SampleRows::bytes(nx, ny) + 2 * plane_of_signs + (signs_only ? EdgeEndSampler::bytes(nx, ny) : 0);
   const std::uint64_t record = (ny + 1) * (nz + 1) * (sizeof(RowCounts) + 4 * sizeof(std::uint16_t));
   const std::uint64_t shared = (nx + ny + nz) * sizeof(double) + bricks_of(grid) * sizeof(BrickRecord) + record;
-  return fits(grid, held + jobs * thread + shared,
-              "contouring with " + std::to_string(jobs) + (jobs == 1 ? " thread" : " threads"), run, diagnostics);
+  return fits_memory(grid, held + jobs * thread + shared,
+                     "contouring with " + std::to_string(jobs) + (jobs == 1 ? " thread" : " threads"), run,
+                     diagnostics);
 }
 
 class Contouring {
@@ -83,7 +74,7 @@ class Contouring {
   template <class Pass, class Brick>
   bool for_each_brick(OrderedOutput& output, Pass make_pass, Brick do_brick);
   bool fits(std::uint64_t bytes, std::string_view purpose) {
-    return implicit::fits(source_.grid(), bytes, purpose, run_, diagnostics_);
+    return fits_memory(source_.grid(), bytes, purpose, run_, diagnostics_);
   }
   OrderedOutput output(bool (MeshSink::*write)(std::string_view)) {
     return {[this, write](std::string_view bytes) { return (sink_.*write)(bytes); }, jobs_,

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 
 namespace meso::implicit {
 
@@ -23,6 +24,17 @@ std::array<std::int32_t, 3> nodes_for_total(const Box3& box, double total) {
     log_left = std::max(0.0, count > 2 ? log_left - (std::log(size[order[i]]) + per_length) : log_left - std::log(2.0));
   }
   return nodes;
+}
+
+bool fits_memory(const Grid& grid, std::uint64_t bytes, std::string_view purpose, const RunOptions& run,
+                 DiagnosticSink& diagnostics) {
+  if (bytes <= run.max_memory_bytes) return true;
+  const auto mebibytes = [](std::uint64_t n) { return std::to_string((n >> 20) + (n % (1 << 20) != 0 ? 1 : 0)); };
+  std::string nodes;  // not their product, which may leave 64 bits
+  for (const std::int32_t n : grid.nodes) nodes += (nodes.empty() ? "" : " x ") + std::to_string(n);
+  diagnostics.report({.code = Code::limit_grid_memory,
+                      .args = {nodes, mebibytes(bytes), std::string(purpose), mebibytes(run.max_memory_bytes)}});
+  return false;
 }
 
 double float_step(const Box3& box) {

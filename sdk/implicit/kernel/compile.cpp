@@ -173,8 +173,6 @@ std::uint64_t bytes_of_externals(const Graph& graph, const Grid& grid) {
   return bytes;
 }
 
-std::uint64_t mebibytes(std::uint64_t bytes) { return (bytes + (std::uint64_t{1} << 20) - 1) >> 20; }
-
 }  // namespace
 
 std::unique_ptr<GridSource> compile(const Term& term, const Grid& grid, const CompileOptions& options,
@@ -185,12 +183,7 @@ std::unique_ptr<GridSource> compile(const Term& term, const Grid& grid, const Co
   CompileOptions within_budget = options;
   within_budget.max_table_bytes = std::min(options.max_table_bytes, run.max_memory_bytes / 4);
   const std::uint64_t bytes = bytes_of_externals(graph, grid);
-  if (bytes > run.max_memory_bytes) {
-    sink.report({.code = Code::limit_grid_memory,
-                 .args = {std::to_string(grid.node_count()), std::to_string(mebibytes(bytes)), "the meshes in it",
-                          std::to_string(mebibytes(run.max_memory_bytes))}});
-    return nullptr;
-  }
+  if (!fits_memory(grid, bytes, "the meshes in it", run, sink)) return nullptr;
   const std::vector<Band> bands = external_bands(graph, root);
   if (!options.strict_math) root = separate(graph, root, grid);
   root = fit_to_floats(graph, root, term, grid);

@@ -150,13 +150,7 @@ bool slice(const GridSource& source, std::int32_t count, const std::function<boo
   const Grid& grid = source.grid();
   const std::uint64_t bytes =
       (std::uint64_t(grid.nodes[0]) + 2) * (std::uint64_t(grid.nodes[1]) + 2) * 5 * planes_at_a_time;
-  if (bytes > run.max_memory_bytes) {
-    const auto mebibytes = [](std::uint64_t n) { return std::to_string((n + (std::uint64_t{1} << 20) - 1) >> 20); };
-    diagnostics.report({.code = Code::limit_grid_memory,
-                        .args = {std::to_string(grid.node_count()), mebibytes(bytes), "planes of samples",
-                                 mebibytes(run.max_memory_bytes)}});
-    return false;
-  }
+  if (!fits_memory(grid, bytes, "planes of samples", run, diagnostics)) return false;
   Threads threads(run);
   std::vector<Slice> slices(planes_at_a_time);
   for (std::int32_t first = 0; first < count; first += planes_at_a_time) {

@@ -93,15 +93,6 @@ class Plane {
   std::vector<double> values_;
 };
 
-bool fits(const Grid& grid, std::uint64_t bytes, const RunOptions& run, DiagnosticSink& diagnostics) {
-  if (bytes <= run.max_memory_bytes) return true;
-  const auto mebibytes = [](std::uint64_t n) { return std::to_string((n + (std::uint64_t{1} << 20) - 1) >> 20); };
-  diagnostics.report({.code = Code::limit_grid_memory,
-                      .args = {std::to_string(grid.node_count()), mebibytes(bytes), "planes of voxels",
-                               mebibytes(run.max_memory_bytes)}});
-  return false;
-}
-
 }  // namespace
 
 Grid VoxelGrid::samples() const {
@@ -121,7 +112,7 @@ bool sample_voxels(const GridSource& source, const VoxelGrid& voxels, VoxelValue
   assert(value != VoxelValue::distance || voxels.subsamples == (std::array<std::int32_t, 3>{1, 1, 1}));
   const VoxelArray array = array_of(voxels, value);
   const std::uint64_t per_plane = array.plane_bytes() + 8 * std::uint64_t{array.cells[0]} * array.cells[1];
-  if (!fits(source.grid(), per_plane * planes_at_a_time, run, diagnostics)) return false;
+  if (!fits_memory(source.grid(), per_plane * planes_at_a_time, "planes of voxels", run, diagnostics)) return false;
   if (!sink.begin(array)) return false;
   Threads threads(run);
   std::vector<char> bytes(array.plane_bytes() * planes_at_a_time);

@@ -7,7 +7,10 @@
 
 #include <array>
 #include <cstdint>
+#include <string_view>
 
+#include "meso/base/diagnostic.hpp"
+#include "meso/base/run_options.hpp"
 #include "meso/base/vec.hpp"
 
 namespace meso::implicit {
@@ -34,6 +37,11 @@ struct Grid {
 /// rounded, at least 2; what one axis takes beyond its share the longer ones do without. REQUIRES: a box of positive
 /// size.
 [[nodiscard]] std::array<std::int32_t, 3> nodes_for_total(const Box3& box, double total);
+
+/// Whether work on a grid that takes so many bytes is within the budget; LIMIT_GRID_MEMORY, with what it takes them
+/// for, where it is not.
+[[nodiscard]] bool fits_memory(const Grid& grid, std::uint64_t bytes, std::string_view purpose, const RunOptions& run,
+                               DiagnosticSink& diagnostics);
 
 /// The step of a box's largest coordinate, as a float.
 [[nodiscard]] double float_step(const Box3& box);
