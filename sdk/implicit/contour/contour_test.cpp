@@ -392,7 +392,7 @@ TEST(Contour, RefusesGridsThatExceedTheBudget) {
   run.max_memory_bytes = 1u << 20;
   EXPECT_FALSE(contour(FunctionSource(cube(1000), ball), sink, {}, run, before));
   EXPECT_EQ(before.diagnostics().at(0).code, Code::limit_grid_memory);
-  EXPECT_EQ(before.diagnostics().at(0).args.at(0), "1000000000");
+  EXPECT_EQ(before.diagnostics().at(0).args.at(0), "1000 x 1000 x 1000");
   EXPECT_FALSE(contour(FunctionSource(cube(60), noise), sink, {}, run, later));  // its record
   EXPECT_EQ(later.diagnostics().at(0).code, Code::limit_grid_memory);
   EXPECT_FALSE(contour(FunctionSource(cube(60), gyroid), sink, {}, run, after));  // the mesh in memory
