@@ -15,21 +15,6 @@ constexpr int most_steps = 8;
 
 }  // namespace
 
-Vec3 within(unsigned planes, Vec3 v) {
-  for (std::size_t axis = 0; axis < 3; ++axis)
-    if ((planes >> 2 * axis & 3U) != 0) v[axis] = 0;
-  return v;
-}
-
-unsigned planes_of(const Box3& box, Vec3 p) {
-  unsigned planes = 0;
-  for (unsigned axis = 0; axis < 3; ++axis) {
-    if (p[axis] == box.min[axis]) planes |= 1U << 2 * axis;
-    if (p[axis] == box.max[axis]) planes |= 2U << 2 * axis;
-  }
-  return planes;
-}
-
 SurfaceFeet::SurfaceFeet(const GridSource& source, std::function<bool()> go_on)
     : grid_(source.grid()), sampler_(source.sampler()), go_on_(std::move(go_on)) {}
 

@@ -34,11 +34,6 @@ struct Ray {
   bool hit = false;
 };
 
-/// On which sides of the box a point stands: bits 0, 1 are the two across x.
-[[nodiscard]] unsigned planes_of(const Box3& box, Vec3 p);
-/// What is left of a vector in these planes.
-[[nodiscard]] Vec3 within(unsigned planes, Vec3 v);
-
 /// One thread's.
 class SurfaceFeet {
  public:

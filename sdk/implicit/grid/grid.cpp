@@ -26,6 +26,21 @@ std::array<std::int32_t, 3> nodes_for_total(const Box3& box, double total) {
   return nodes;
 }
 
+unsigned planes_of(const Box3& box, Vec3 p) {
+  unsigned planes = 0;
+  for (unsigned axis = 0; axis < 3; ++axis) {
+    if (p[axis] == box.min[axis]) planes |= 1U << 2 * axis;
+    if (p[axis] == box.max[axis]) planes |= 2U << 2 * axis;
+  }
+  return planes;
+}
+
+Vec3 within(unsigned planes, Vec3 v) {
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    if ((planes >> 2 * axis & 3U) != 0) v[axis] = 0;
+  return v;
+}
+
 bool fits_memory(const Grid& grid, std::uint64_t bytes, std::string_view purpose, const RunOptions& run,
                  DiagnosticSink& diagnostics) {
   if (bytes <= run.max_memory_bytes) return true;

@@ -57,7 +57,7 @@ std::optional<TetMesh> stuff(const BccLattice& lattice, const GridSource& corner
   if (!tets) return stopped();
   stuffing::Numbered numbered = number_points(std::move(*tets), points, cuts, moved);
   if (!threads.go_on()) return stopped();
-  stuffing::move_to_rims(numbered, lattice, corners);
+  if (!stuffing::move_to_rims(numbered, lattice, corners, threads)) return stopped();
   find_boundary(numbered, lattice.box);
   return threads.go_on() ? std::optional(std::move(numbered.mesh)) : stopped();
 }

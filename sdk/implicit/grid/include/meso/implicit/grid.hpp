@@ -38,6 +38,11 @@ struct Grid {
 /// size.
 [[nodiscard]] std::array<std::int32_t, 3> nodes_for_total(const Box3& box, double total);
 
+/// On which sides of the box a point stands: bits 0 and 1 are the two across x, 2 and 3 those across y.
+[[nodiscard]] unsigned planes_of(const Box3& box, Vec3 p);
+/// What is left of a vector in these planes.
+[[nodiscard]] Vec3 within(unsigned planes, Vec3 v);
+
 /// Whether work on a grid that takes so many bytes is within the budget; LIMIT_GRID_MEMORY, with what it takes them
 /// for, where it is not.
 [[nodiscard]] bool fits_memory(const Grid& grid, std::uint64_t bytes, std::string_view purpose, const RunOptions& run,
