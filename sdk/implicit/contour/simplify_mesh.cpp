@@ -4,8 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <queue>
-#include <tuple>
+#include <optional>
 
 #include "mesh_links.hpp"
 #include "surface_feet.hpp"
@@ -53,6 +52,32 @@ struct Quadric {
   }
 };
 
+/// Collapses by what they cost, at most 1, in a thousand classes; of one class, the first that came. Each next one
+/// is found without a search: a heap of tens of millions waits for memory at each of its levels.
+class CollapseQueue {
+ public:
+  struct Collapse {
+    std::uint32_t a, b, version;
+  };
+
+  /// What is cheaper than the class that is under way joins that.
+  void push(double cost, const Collapse& collapse) {
+    const auto costs = static_cast<std::size_t>(cost * static_cast<double>(classes_.size()));
+    classes_[std::clamp(costs, class_, classes_.size() - 1)].push_back(collapse);
+  }
+  [[nodiscard]] std::optional<Collapse> pop() {
+    for (; class_ < classes_.size(); ++class_, next_ = 0) {
+      if (next_ < classes_[class_].size()) return classes_[class_][next_++];
+      classes_[class_] = {};
+    }
+    return std::nullopt;
+  }
+
+ private:
+  std::vector<std::vector<Collapse>> classes_ = std::vector<std::vector<Collapse>>(1024);
+  std::size_t class_ = 0, next_ = 0;
+};
+
 class Simplify {
  public:
   Simplify(TriangleMesh& mesh, const Box3& box, double bound, std::span<const char> kept)
@@ -64,13 +89,6 @@ class Simplify {
   bool run(const RunOptions& run);
 
  private:
-  struct Collapse {
-    double cost;
-    std::uint32_t a, b, version;
-    [[nodiscard]] auto key() const { return std::tie(cost, a, b, version); }
-    friend bool operator>(const Collapse& x, const Collapse& y) { return x.key() > y.key(); }
-  };
-
   void push(std::uint32_t a, std::uint32_t b);
   [[nodiscard]] bool best_place(std::uint32_t a, std::uint32_t b, Vec3& place, double& cost) const;
   [[nodiscard]] bool keeps_sides(std::uint32_t moved, std::uint32_t other, Vec3 place) const;
@@ -85,7 +103,7 @@ class Simplify {
   std::vector<unsigned> planes_;
   std::vector<Quadric> quadrics_;
   std::vector<std::uint32_t> version_, near_;
-  std::priority_queue<Collapse, std::vector<Collapse>, std::greater<>> queue_;
+  CollapseQueue queue_;
 };
 
 // A point on planes of the box moves onto one that is on them, too.
@@ -114,7 +132,7 @@ void Simplify::push(std::uint32_t a, std::uint32_t b) {
   double cost = 0;
   if (a > b) std::swap(a, b);
   if (!kept_.empty() && (kept_[a] != 0 || kept_[b] != 0)) return;
-  if (best_place(a, b, place, cost)) queue_.push({cost, a, b, version_[a] + version_[b]});
+  if (best_place(a, b, place, cost)) queue_.push(std::sqrt(cost / limit_), {a, b, version_[a] + version_[b]});
 }
 
 // No triangle that is left turns by more than 60 degrees, or gets very narrow.
@@ -165,12 +183,11 @@ bool Simplify::run(const RunOptions& run) {
   for (const auto& t : triangles_)
     for (std::size_t i = 0; i < 3; ++i)
       if (t[i] < t[(i + 1) % 3]) push(t[i], t[(i + 1) % 3]);
-  for (std::size_t looked = 0; !queue_.empty(); ++looked) {
-    if (looked % 4096 == 0 && run.should_stop()) return false;
-    const Collapse next = queue_.top();
-    queue_.pop();
-    const std::uint32_t a = next.a, b = next.b;
-    if (!links_.has_point(a) || !links_.has_point(b) || next.version != version_[a] + version_[b]) continue;
+  std::size_t looked = 0;
+  while (const auto next = queue_.pop()) {
+    if (++looked % 4096 == 0 && run.should_stop()) return false;
+    const auto [a, b, version] = *next;
+    if (!links_.has_point(a) || !links_.has_point(b) || version != version_[a] + version_[b]) continue;
     Vec3 place;
     double cost = 0;
     if (!best_place(a, b, place, cost) || !links_.stays_manifold(a, b) || !keeps_sides(a, b, place) ||
