@@ -122,6 +122,7 @@ class Making {
   double grid_triangles_ = 0;
   double expected_ = 0;     // triangles of what is under way
   RefinableMesh::Far far_;  // of the mesh that is taken
+  std::optional<Diagnostic> left_;
   bool spares_ = false;     // most of the triangles are more than curves ask for
   double finer_takes_ = 0;  // where that will not be enough
   CountedSource::Counts counts_;
@@ -391,7 +392,7 @@ bool Making::to_tolerance(const Grid& first) {
     return true;
   }
   if (!refine_or_tell() || !take_refined() || (spares_ && !thin())) return false;
-  if (out_.distance > options_.tolerance) diagnostics_.report(not_reached(options_.tolerance));
+  if (out_.distance > options_.tolerance) left_ = not_reached(options_.tolerance);
   return true;
 }
 
@@ -492,33 +493,44 @@ double Making::triangles_of_finer(double distance) const {
                    std::min(grid_triangles_ * all * all, most_triangles));
 }
 
-// What the planes of triangles promise is measured; where it does not hold, once more from the start with less. A mesh
-// that is too far before anything is taken away comes no closer by that.
+// What the planes of triangles promise is measured. Where it does not hold at a few places, all is kept around these
+// the next time; else it is tried from the start with less. A mesh that is too far before anything is taken away comes
+// no closer by that.
 bool Making::simplify() {
+  constexpr int most_attempts = 6;
+  constexpr std::size_t few_of = 50;
   const TriangleMesh whole = std::move(out_.mesh);
   const auto distance_of = [&](const TriangleMesh& mesh) {
     measure(mesh, false, options_.simplify);
     refinable_->measure_creases(options_.simplify);
     return refinable_->distance();
   };
+  std::vector<char> kept(whole.points.size(), 0);
   double bound = options_.simplify, before = 0;
-  for (int attempt = 0; attempt < 6; ++attempt) {
-    run_.report("simplifying", attempt / 6.0);
+  for (int attempt = 0; attempt < most_attempts; ++attempt) {
+    run_.report("simplifying", static_cast<double>(attempt) / most_attempts);
     TriangleMesh mesh = whole;
-    if (!simplify_mesh(mesh, out_.grid.box, bound, run_)) return go_on();
+    if (!simplify_mesh(mesh, out_.grid.box, bound, run_, kept)) return go_on();
     out_.distance = distance_of(mesh);
     if (!go_on()) return false;
     far_ = refinable_->what_is_far(options_.simplify);
+    const bool is_few = far_.triangles < refinable_->mesh().triangles.size() / few_of;
+    if (is_few) refinable_->mark_around_far(options_.simplify, feet_->cell(), whole.points, kept);
     out_.mesh = refinable_->take();
-    if (out_.distance <= options_.simplify) return true;
-    if (attempt == 0 && (before = distance_of(whole)) > options_.simplify) break;
-    bound *= std::clamp(0.95 * options_.simplify / out_.distance, 0.2, 0.6);
+    if (out_.distance <= std::max(options_.simplify, before)) break;
+    if (attempt == 0 && (before = distance_of(whole)) > options_.simplify) {
+      if (options_.tolerance == 0) break;
+      refinable_->mark_around_far(options_.simplify, feet_->cell(), whole.points, kept);
+    } else if (!is_few) {
+      bound *= std::clamp(0.95 * options_.simplify / out_.distance, 0.2, 0.6);
+    }
   }
   if (!go_on()) return false;
+  if (out_.distance <= options_.simplify) return true;
   const bool is_grid = before > options_.simplify && options_.tolerance == 0;
-  diagnostics_.report(is_grid ? Diagnostic{.code = Code::simplify_from_coarse,
-                                           .args = {format_number(before), format_number(options_.simplify)}}
-                              : not_reached(options_.simplify));
+  left_ = is_grid ? Diagnostic{.code = Code::simplify_from_coarse,
+                               .args = {rounded_beyond(before, options_.simplify), format_number(options_.simplify)}}
+                  : not_reached(options_.simplify);
   return true;
 }
 
@@ -529,6 +541,7 @@ std::optional<AccurateMesh> Making::make(Grid grid) {
     if (!contour_on(grid)) return std::nullopt;
   }
   if (options_.simplify > 0 && !out_.mesh.triangles.empty() && !simplify()) return std::nullopt;
+  if (left_) diagnostics_.report(*left_);
   forget_foreseen_memory();
   out_.grid_samples = counts_.on_grids;
   out_.surface_samples = counts_.at_points;
