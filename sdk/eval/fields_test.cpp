@@ -208,11 +208,12 @@ TEST(Derived, DirectionsOrientCells) {
 
 /// What check_reach says about pattern "p" against a body of this box.
 std::string reach_of(const std::string& instructions, const Box3& body, const std::string& operation = "difference",
-                     const MayReach& may_reach = {}, const std::string& places = "<scatter field='f'/>") {
+                     const MayReach& may_reach = {}, const std::string& places = "<scatter field='f'/>",
+                     const std::string& unit_cell = cell) {
   const Evaluation evaluation = evaluation_of(
       "<macrostructures><macrostructure id='m'><csg><box dx='1' dy='1' "
       "dz='1'/></csg></macrostructure></macrostructures>" +
-      pattern_text(places + instructions, cell, "", four) +
+      pattern_text(places + instructions, unit_cell, "", four) +
       "<parts><part id='q' macrostructure='m'><apply pattern='p' operation='" + operation + "'/></part></parts>");
   const Part& part = evaluation.document().parts.items.at(0);
   DiagnosticSink sink;
@@ -256,6 +257,21 @@ TEST(Loops, CellsThatAllMissTheBodyAreTold) {
   EXPECT_EQ(reach_of("", far, "union", {}, loop), "");
   EXPECT_EQ(reach_of("", Box3{}, "difference", {}, loop), "");
   EXPECT_EQ(reach_of("<when test='i &gt; 9'/>", far, "difference", {}, loop), "PATTERN_KEEPS_NONE");
+}
+
+// A cell of 2 x 3 x 4 mm.
+TEST(Loops, BodiesSmallerThanACellAreTold) {
+  const std::string loop = "<loop index='i' axis='x' count='4' spacing='2'/>";
+  std::string boxed = cell;
+  boxed.insert(boxed.find("<csg>"), "<box dx='2' dy='3' dz='4'/>");
+  const auto told = [&](double size, const std::string& operation, const std::string& unit_cell) {
+    return reach_of("", {{0, 0, 0}, {size, 1, 1}}, operation, {}, loop, unit_cell);
+  };
+  EXPECT_EQ(told(1.9, "intersection", boxed), "BODY_WITHIN_CELL");
+  EXPECT_EQ(told(2.1, "intersection", boxed), "");
+  EXPECT_EQ(told(1.9, "difference", boxed), "");
+  EXPECT_EQ(told(1.9, "union", boxed), "");
+  EXPECT_EQ(told(1.9, "intersection", cell), "");
 }
 
 TEST(FieldFaults, OneDiagnosticEach) {

@@ -2,6 +2,7 @@
 #include "meso/eval/pattern_reach.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "meso/base/number.hpp"
 #include "scope.hpp"
@@ -45,6 +46,27 @@ void warn_of_miss(const Evaluation& evaluation, const CellStream& cells, const P
       {cells.pattern().id.text, part.id.text, text_of(body_mm.min), text_of(body_mm.max), first});
 }
 
+/// An intersection of what is smaller than one cell is a scrap of that; most often, a unit is wrong.
+void warn_of_scrap(const Evaluation& evaluation, const CellStream& cells, const Part& part, const Box3& body_mm,
+                   DiagnosticSink& sink) {
+  double edge = HUGE_VAL;
+  DiagnosticSink untold;  // the cell is evaluated again, and its faults are told there
+  (void)cells.visit_touching(
+      body_mm,
+      [&](const PlacedCell& cell) {
+        const auto box = cell.mapping == CellMapping::rigid ? cells.cell_box(cell, untold) : std::nullopt;
+        if (box) edge = std::min({box->size.x, box->size.y, box->size.z});
+        return false;
+      },
+      untold);
+  const Vec3 size = body_mm.max - body_mm.min;
+  const double longest = std::max({size.x, size.y, size.z});
+  if (!std::isfinite(edge) || !(longest < edge)) return;
+  Report{evaluation.checked().source(), sink}(
+      Code::body_within_cell, {cells.pattern().id_in_source, {}},
+      {cells.pattern().id.text, part.id.text, format_number(longest), format_number(edge)});
+}
+
 bool has_when(const Pattern& pattern) {
   return std::ranges::any_of(pattern.instructions,
                              [](const Instruction& i) { return std::holds_alternative<WhenInstruction>(i); });
@@ -78,6 +100,8 @@ bool check_reach(const Evaluation& evaluation, const CellStream& cells, const Ap
     return check_keeps_any(evaluation, cells, sink);
   const Found touching =
       any([&](const auto& visitor) { return cells.visit_touching(body_mm, visitor, sink); }, may_reach, sink);
+  if (touching == Found::some && apply.operation == ApplyOperation::intersection)
+    warn_of_scrap(evaluation, cells, part, body_mm, sink);
   if (touching != Found::none) return touching == Found::some;
   const Found kept = any_kept(cells, sink);
   if (kept == Found::none) return check_keeps_any(evaluation, cells, sink);
