@@ -13,6 +13,7 @@ constexpr double pi = std::numbers::pi;
 constexpr double margin = 0.1;          ///< of the cell, by which a patch exceeds it
 constexpr double wide_margin = 0.5;     ///< of the cell, where the narrow one did not do
 constexpr std::size_t many_edges = 12;  ///< from here on a window in the face is cheaper than the face
+constexpr double long_edge = 4;         ///< diagonals of the cell
 constexpr double steepest = 1.3;        ///< latitude of a patch on a sphere
 
 /// A surface with parameters that are regular where the cell is.
@@ -158,6 +159,18 @@ Vec3 grown_half(const CellGrid& grid, double reach, double share) {
   return {half.x + by, half.y + by, half.z + by};
 }
 
+/// OpenCASCADE does not find where a long B-spline crosses a plane that it all but touches.
+bool has_long_spline(const BodySurface::Face& mesh, const FaceEdges& face, double longest) {
+  for (std::size_t e = 0; e < face.edges.size(); ++e) {
+    if (BRepAdaptor_Curve(face.edges[e]).GetType() <= GeomAbs_Parabola) continue;
+    double length = 0;
+    const std::vector<std::uint32_t>& nodes = mesh.edges[e].nodes;
+    for (std::size_t i = 0; i + 1 < nodes.size(); ++i) length += norm(mesh.nodes[nodes[i + 1]] - mesh.nodes[nodes[i]]);
+    if (length > longest) return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 LocalFaces::LocalFaces(const BodySurface& surface, const CellGrid& grid) : surface_(surface), grid_(grid) {
@@ -168,6 +181,8 @@ LocalFaces::LocalFaces(const BodySurface& surface, const CellGrid& grid) : surfa
       FaceEdges& face = faces_.emplace_back(FaceEdges{TopoDS::Face(it.Current()), {}});
       for (TopExp_Explorer edge(face.face.Oriented(TopAbs_FORWARD), TopAbs_EDGE); edge.More(); edge.Next())
         if (!BRep_Tool::Degenerated(TopoDS::Edge(edge.Current()))) face.edges.push_back(TopoDS::Edge(edge.Current()));
+      is_long_.push_back(has_long_spline(surface.face(static_cast<std::uint32_t>(solid_of_.size())), face,
+                                         long_edge * norm(grid.size())));
       solid_of_.push_back(solid);
     }
 }
@@ -179,8 +194,9 @@ LocalFaces::Near LocalFaces::near(const Index3& cell, const std::vector<std::uin
     patched.push_back(patches ? patch(number, cell) : TopoDS_Face());
     if (!patched.back().IsNull()) continue;
     const FaceEdges& face = faces_[number];
+    const bool is_taken_whole = face.edges.size() < many_edges && (patches || !is_long_[number]);
     const ParameterRange range =
-        face.edges.size() < many_edges ? ParameterRange{} : window(number, cell, patches ? margin : wide_margin);
+        is_taken_whole ? ParameterRange{} : window(number, cell, patches ? margin : wide_margin);
     if (range.empty())
       windows.add(face);
     else

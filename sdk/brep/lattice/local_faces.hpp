@@ -20,7 +20,8 @@ class LocalFaces {
     std::vector<TopoDS_Shape> solids;    ///< compounds of faces, one for each solid of the body
     std::vector<std::size_t> stand_for;  ///< per face: for which of those that were asked for
   };
-  /// Those faces in the body's frame; if `patches` is not set, whole but for those with many edges.
+  /// Those faces in the body's frame; if `patches` is not set, whole but for those with many edges
+  /// or long ones.
   [[nodiscard]] Near near(const Index3& cell, const std::vector<std::uint32_t>& faces, bool patches) const;
 
  private:
@@ -31,6 +32,7 @@ class LocalFaces {
   CellGrid grid_;
   std::vector<FaceEdges> faces_;
   std::vector<std::uint32_t> solid_of_;
+  std::vector<bool> is_long_;  ///< has an edge that is to be cut in a window
 };
 
 }  // namespace meso::brep
