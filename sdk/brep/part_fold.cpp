@@ -106,7 +106,8 @@ std::optional<FoldedPart> PartFold::fold(const Part& part, bool is_outermost) {
   if (part.steps.size() > 1 && try_beams(state, part, is_outermost)) return state;
   if (context_.sink.has_errors()) return {};
   for (std::size_t i = 0; i < part.steps.size(); ++i) {
-    options_.run.report("realise", static_cast<double>(i) / static_cast<double>(part.steps.size()));
+    done_ = static_cast<double>(i) / static_cast<double>(part.steps.size());
+    options_.run.report("realise", done_);
     const bool last = i + 1 == part.steps.size();
     if (is_outermost && may_join(part, i, state.solids) && try_joined(state, part, i)) return state;
     if (context_.sink.has_errors()) return {};
@@ -157,6 +158,7 @@ std::optional<FoldStep> PartFold::apply_pattern(FoldedPart& state, const Part& p
     is_done =
         try_template(state, part, *cells, context, stays_body, may_be_graph ? FusedLimit{0, false} : FusedLimit{});
   if (is_done || context_.sink.has_errors() || !struts_fit(thickness, 0.4, context)) return {};
+  options_.run.report("realise", done_);  // why it is no lattice is for before the minutes that it may now take
   if (may_be_graph) {
     GraphStep of_graph = apply_graph(state.solids, *cells, context, state.counts);
     if (of_graph.step && misses(*of_graph.step, state, part, *cells, apply)) return {};

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Documents to bodies: the way each is built, and its volume against the closed form.
+#include <algorithm>
 #include <numbers>
 
 #include "realise_fixture.hpp"
@@ -111,6 +112,25 @@ TEST_F(Realise, TooManyBooleansAreRefused) {
   options.max_boolean_solids = 0;
   EXPECT_FALSE(realised(block + balls(3, 5, 1) + part(R"(<apply pattern="c" operation="difference"/>)"), options));
   EXPECT_EQ(first_code(), Code::limit_booleans);
+}
+
+TEST_F(Realise, WhyALatticeIsNoneIsToldBeforeItsBooleans) {
+  RealiseOptions options;
+  bool is_told = false;
+  options.run.progress = [&](std::string_view, double) {
+    is_told = is_told || std::ranges::any_of(sink_.diagnostics(), [](const Diagnostic& d) {
+                return d.code == Code::geometry_not_repeatable;
+              });
+  };
+  const auto made = realised(macrostructure(R"(<box x="-2" y="-2" z="-2.1" dx="5.3" dy="4" dz="4"/>)") +
+                                 R"(<unitCells><unitCell id="u"><box dx="1" dy="1" dz="1"/><csg><sphere x="0.5" y="0.5"
+         z="0.5" radius="2.6"/></csg></unitCell></unitCells><patterns><pattern id="c" unitCell="u"><loop index="i" axis="x"
+         count="2" spacing="1"/></pattern></patterns>)" +
+                                 part(R"(<apply pattern="c" operation="intersection"/>)"),
+                             options);
+  ASSERT_TRUE(made);
+  EXPECT_EQ(made->way, "boolean");
+  EXPECT_TRUE(is_told);
 }
 
 TEST_F(Realise, PolarSectorsInARingShareOneTemplate) {
