@@ -61,6 +61,13 @@ class Feet {
     return Foot{to_vec(surface_->Value(at)), at};
   }
 
+  [[nodiscard]] Vec3 normal_at(const gp_Pnt2d& at) const {
+    gp_Pnt p;
+    gp_Vec u, v;
+    surface_->Surface()->D1(at.X(), at.Y(), p, u, v);
+    return to_vec(u.Crossed(v).XYZ());
+  }
+
  private:
   Handle(ShapeAnalysis_Surface) surface_;
   bool is_free_form_;
@@ -75,6 +82,22 @@ void halve(Triangulation& mesh, Feet feet, const Mat3& lattice, const Wants& wan
   // Triangles that have nothing to do with the surface get no better.
   const std::size_t most_triangles = 8 * mesh.triangles.size() + 1000;
   const auto place = [&](std::uint32_t i) { return place_of(mesh.points[i], lattice); };
+  // Whether the halves of both triangles face the way that these do, seen along the surface's normal.
+  const auto is_upright = [&](const Segment& segment, const Sides& sides, const Feet::Foot& foot) {
+    const Vec3 normal = feet.normal_at(foot.at);
+    const auto height = [&](const std::array<Vec3, 3>& p) { return dot(normal, cross(p[1] - p[0], p[2] - p[0])); };
+    for (const std::size_t t : sides.triangle) {
+      std::array<Vec3, 3> whole;
+      for (std::size_t k = 0; k < 3; ++k) whole[k] = place(mesh.triangles[t][k]);
+      for (std::size_t k = 0; k < 3; ++k) {
+        if (mesh.triangles[t][k] != segment[0] && mesh.triangles[t][k] != segment[1]) continue;
+        std::array<Vec3, 3> half = whole;
+        half[k] = foot.point;
+        if (height(whole) * height(half) <= 0) return false;
+      }
+    }
+    return true;
+  };
   std::vector<bool> is_new(mesh.triangles.size(), true);  // since the last pass
   std::vector<Parameters> beside(mesh.points.size());     // of a foot near each point
   for (int pass = 0; pass < most_passes && mesh.triangles.size() < most_triangles; ++pass) {
@@ -99,8 +122,9 @@ void halve(Triangulation& mesh, Feet feet, const Mat3& lattice, const Wants& wan
       Vec3 beside_middle = 0.75 * middle + 0.125 * corners;
       if (const Vec3 aside = beside_middle - middle; norm(aside) > near)
         beside_middle = middle + near / norm(aside) * aside;
-      const auto point = feet(beside_middle, near, {foot->at, {}});
+      auto point = feet(beside_middle, near, {foot->at, {}});
       if (!point) continue;
+      if (!is_upright(segment, sides, *point) && is_upright(segment, sides, *foot)) point = foot;
       const auto fresh = static_cast<std::uint32_t>(mesh.points.size());
       mesh.points.push_back({.point = point->point});
       beside.emplace_back(point->at);

@@ -129,7 +129,7 @@ Polygon joined(const std::vector<PlanePoint>& plane, std::vector<Polygon> loops)
 /// Of all triangulations of a polygon the one that is folded least, and of those the one with the shortest sides: each
 /// part of the polygon beyond a diagonal is done once (Barequet and Sharir, Comput. Aided Geom. Des. 12, 1995).
 std::optional<UnrolledMesh> least_folded(const std::vector<PlanePoint>& plane, const Polygon& polygon) {
-  constexpr std::size_t most_points = 400;
+  constexpr std::size_t most_points = 1000;  // a second
   constexpr double price_of_fold = 1e4;
   const std::size_t n = polygon.size();
   if (n > most_points) return {};
