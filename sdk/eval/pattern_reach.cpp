@@ -49,18 +49,18 @@ void warn_of_miss(const Evaluation& evaluation, const CellStream& cells, const P
 /// An intersection of what is smaller than one cell is a scrap of that; most often, a unit is wrong.
 void warn_of_scrap(const Evaluation& evaluation, const CellStream& cells, const Part& part, const Box3& body_mm,
                    DiagnosticSink& sink) {
-  double edge = HUGE_VAL;
-  DiagnosticSink untold;  // the cell is evaluated again, and its faults are told there
+  const Vec3 size = body_mm.max - body_mm.min;
+  const double longest = std::max({size.x, size.y, size.z});
+  double edge = HUGE_VAL;  // the shortest of all cells there
+  DiagnosticSink untold;   // the cell is evaluated again, and its faults are told there
   (void)cells.visit_touching(
       body_mm,
       [&](const PlacedCell& cell) {
         const auto box = cell.mapping == CellMapping::rigid ? cells.cell_box(cell, untold) : std::nullopt;
-        if (box) edge = std::min({box->size.x, box->size.y, box->size.z});
-        return false;
+        edge = box ? std::min({edge, box->size.x, box->size.y, box->size.z}) : 0;
+        return edge > longest;
       },
       untold);
-  const Vec3 size = body_mm.max - body_mm.min;
-  const double longest = std::max({size.x, size.y, size.z});
   if (!std::isfinite(edge) || !(longest < edge)) return;
   Report{evaluation.checked().source(), sink}(
       Code::body_within_cell, {cells.pattern().id_in_source, {}},

@@ -494,10 +494,10 @@ double Making::triangles_of_finer(double distance) const {
 }
 
 // What the planes of triangles promise is measured. Where it does not hold at a few places, all is kept around these
-// the next time; else it is tried from the start with less. A mesh that is too far before anything is taken away comes
-// no closer by that.
+// the next time; else, or where that has not helped, it is tried from the start with less. The closest mesh is taken.
+// One that is too far before anything is taken away comes no closer by that.
 bool Making::simplify() {
-  constexpr int most_attempts = 6;
+  constexpr int most_attempts = 6, most_of_full = 3;
   constexpr std::size_t few_of = 50;
   const TriangleMesh whole = std::move(out_.mesh);
   const auto distance_of = [&](const TriangleMesh& mesh) {
@@ -506,25 +506,35 @@ bool Making::simplify() {
     return refinable_->distance();
   };
   std::vector<char> kept(whole.points.size(), 0);
+  const auto keep_around_few = [&] {
+    far_ = refinable_->what_is_far(options_.simplify);
+    if (far_.triangles >= refinable_->mesh().triangles.size() / few_of) return false;
+    refinable_->mark_around_far(options_.simplify, feet_->cell(), whole.points, kept);
+    return true;
+  };
   double bound = options_.simplify, before = 0;
+  out_.distance = HUGE_VAL;
+  RefinableMesh::Far far_of_closest;
   for (int attempt = 0; attempt < most_attempts; ++attempt) {
     run_.report("simplifying", static_cast<double>(attempt) / most_attempts);
     TriangleMesh mesh = whole;
     if (!simplify_mesh(mesh, out_.grid.box, bound, run_, kept)) return go_on();
-    out_.distance = distance_of(mesh);
+    const double distance = distance_of(mesh);
     if (!go_on()) return false;
-    far_ = refinable_->what_is_far(options_.simplify);
-    const bool is_few = far_.triangles < refinable_->mesh().triangles.size() / few_of;
-    if (is_few) refinable_->mark_around_far(options_.simplify, feet_->cell(), whole.points, kept);
-    out_.mesh = refinable_->take();
-    if (out_.distance <= std::max(options_.simplify, before)) break;
+    const bool is_few = keep_around_few();
+    if (distance < out_.distance) {
+      out_.distance = distance;
+      far_of_closest = far_;
+      out_.mesh = refinable_->take();
+    }
+    if (distance <= std::max(options_.simplify, before)) break;
     if (attempt == 0 && (before = distance_of(whole)) > options_.simplify) {
-      if (options_.tolerance == 0) break;
-      refinable_->mark_around_far(options_.simplify, feet_->cell(), whole.points, kept);
-    } else if (!is_few) {
-      bound *= std::clamp(0.95 * options_.simplify / out_.distance, 0.2, 0.6);
+      if (options_.tolerance == 0 || !keep_around_few()) break;
+    } else if (!is_few || attempt + 1 >= most_of_full) {
+      bound *= std::clamp(0.95 * options_.simplify / distance, 0.2, 0.6);
     }
   }
+  far_ = far_of_closest;
   if (!go_on()) return false;
   if (out_.distance <= options_.simplify) return true;
   const bool is_grid = before > options_.simplify && options_.tolerance == 0;

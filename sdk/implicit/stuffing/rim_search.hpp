@@ -17,7 +17,7 @@ struct Rim {
 };
 
 /// Down the field's slope in the planes, or where it has none towards where its sign changes; no farther than nine
-/// tenths of the spacing. About 30 values a rim, asked of all together.
+/// tenths of the spacing. About 30 values a rim, asked of all together; 600 where it has none.
 void find_rims(std::span<Rim> rims, GridSampler& sampler, const BccLattice& lattice);
 
 }  // namespace meso::implicit::stuffing

@@ -110,7 +110,7 @@ class Rims {
       for (std::size_t i = first; i < last; ++i) candidates[i].rim = rims[i - first];
     });
     for (const Candidate& c : candidates)
-      if (!c.rim.is_found) done_[c.point] = 1;
+      if (!c.rim.is_found && planes_[c.point] != 0) done_[c.point] = 1;
     return whole;
   }
 
