@@ -146,7 +146,9 @@ class FaceBorder {
     const Vec3 along = b - a;
     const double length = norm(along);
     if (length == 0) return;
-    const Vec3 left = cross(outward(stretch.at[i]), along) / length;
+    const Vec3 normal = outward(stretch.at[i]);
+    if (norm(normal) == 0) return;  // at a pole
+    const Vec3 left = cross(normal, along) / length;
     const auto [first, last] = std::minmax(stretch.parameters[i], stretch.parameters[i + 1]);
     double unused_first = 0, unused_last = 0;
     const Handle(Geom_Curve) curve = BRep_Tool::Curve(stretch.edge, unused_first, unused_last);
@@ -168,13 +170,13 @@ class FaceBorder {
     }
   }
 
-  /// The face's normal, of any length.
+  /// The face's normal; 0 where it has none.
   [[nodiscard]] Vec3 outward(const PlanePoint& at) const {
     gp_Pnt p;
     gp_Vec u, v;
     BRep_Tool::Surface(face_)->D1(at[0], at[1], p, u, v);
     const Vec3 normal = to_vec(u.Crossed(v).XYZ());
-    return is_reversed() ? -normal : normal;
+    return norm(normal) > 0 ? (is_reversed() ? -1 : 1) / norm(normal) * normal : Vec3{};
   }
 
   const TopoDS_Face& face_;
@@ -185,6 +187,10 @@ class FaceBorder {
 };
 
 }  // namespace
+
+bool bounds(const TopoDS_Edge& edge) {
+  return edge.Orientation() == TopAbs_FORWARD || edge.Orientation() == TopAbs_REVERSED;
+}
 
 std::vector<double> parameters_on(const TopoDS_Edge& edge, const std::vector<Vec3>& inner) {
   double first = 0, last = 0;
@@ -227,7 +233,7 @@ std::optional<BorderedMesh> bordered_mesh(const TopoDS_Face& face, const Templat
   std::vector<Stretch> stretches;
   for (TopExp_Explorer it(face, TopAbs_EDGE); it.More(); it.Next()) {
     const TopoDS_Edge& edge = TopoDS::Edge(it.Current());
-    stretches.push_back(stretch_of(edge, face, points_of(edge)));
+    if (bounds(edge)) stretches.push_back(stretch_of(edge, face, points_of(edge)));
   }
   auto loops = chained(std::move(stretches));
   if (loops.empty()) return {};

@@ -28,6 +28,9 @@ struct EdgePoints {
   std::vector<double> parameters;
 };
 
+/// Whether an edge of a face is part of its border; a line in which the face is touched is none.
+[[nodiscard]] bool bounds(const TopoDS_Edge& edge);
+
 /// The parameters along `edge` (forward) of points on it, in order and rising, between those of its ends. Where the
 /// edge is not quite the one that the points are from, and two feet on it are in the wrong order, by lengths.
 [[nodiscard]] std::vector<double> parameters_on(const TopoDS_Edge& edge, const std::vector<Vec3>& inner);

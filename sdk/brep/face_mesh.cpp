@@ -318,6 +318,7 @@ class FaceMesher {
     std::vector<Border> borders;
     for (TopExp_Explorer it(face, TopAbs_EDGE); it.More(); it.Next()) {
       const TopoDS_Edge& edge = TopoDS::Edge(it.Current());
+      if (!bounds(edge)) continue;
       const Handle(Poly_PolygonOnTriangulation) polygon = BRep_Tool::PolygonOnTriangulation(edge, mesh, location);
       if (polygon.IsNull() || !polygon->HasParameters()) throw Standard_Failure("an edge could not be meshed");
       Border& border = borders.emplace_back();

@@ -362,7 +362,7 @@ std::optional<ClippedLattice> clipped_lattice(const Found& found, const Index3& 
     is_given_up.back() = made && made->is_given_up;
     if (is_given_up.back()) made.reset();
   }
-  // Those that came last got farthest: their reason names a cell sooner than that of the first.
+  // Of the attempts, the last one that has a reason: it most often names a cell.
   const DiagnosticSink* helps = nullptr;
   for (const DiagnosticSink& sink : told)
     if (!sink.diagnostics().empty()) helps = &sink;
