@@ -180,7 +180,8 @@ class Judge:
         if done.returncode == 0:
             return "ok", ""
         if done.returncode in REFUSALS:
-            return "refused", (re.search(r"(?:error|warning) ([A-Z_]+)", done.stderr) or [None, first])[1]
+            told = [re.search(rf"{severity} ([A-Z_]+)", done.stderr) for severity in ("error", "warning")]
+            return "refused", next((t[1] for t in told if t), first)
         failed = []
         if done.stdout.strip():
             faults = [c for c in json.loads(done.stdout).get("checks", []) if not c["passed"]]

@@ -46,7 +46,10 @@ void warn_of_miss(const Evaluation& evaluation, const CellStream& cells, const P
       {cells.pattern().id.text, part.id.text, text_of(body_mm.min), text_of(body_mm.max), first});
 }
 
-/// An intersection of what is smaller than one cell is a scrap of that; most often, a unit is wrong.
+std::string rounded(double length_mm) { return format_number(std::round(1e6 * length_mm) / 1e6); }
+
+/// An intersection of what is smaller than each of many cells is a scrap of one; most often, a unit is wrong. One cell
+/// alone is an operand as any other.
 void warn_of_scrap(const Evaluation& evaluation, const CellStream& cells, const Part& part, const Box3& body_mm,
                    DiagnosticSink& sink) {
   const Vec3 size = body_mm.max - body_mm.min;
@@ -62,9 +65,8 @@ void warn_of_scrap(const Evaluation& evaluation, const CellStream& cells, const 
       },
       untold);
   if (!std::isfinite(edge) || !(longest < edge)) return;
-  Report{evaluation.checked().source(), sink}(
-      Code::body_within_cell, {cells.pattern().id_in_source, {}},
-      {cells.pattern().id.text, part.id.text, format_number(longest), format_number(edge)});
+  Report{evaluation.checked().source(), sink}(Code::body_within_cell, {cells.pattern().id_in_source, {}},
+                                              {cells.pattern().id.text, part.id.text, rounded(longest), rounded(edge)});
 }
 
 bool has_when(const Pattern& pattern) {
@@ -100,7 +102,7 @@ bool check_reach(const Evaluation& evaluation, const CellStream& cells, const Ap
     return check_keeps_any(evaluation, cells, sink);
   const Found touching =
       any([&](const auto& visitor) { return cells.visit_touching(body_mm, visitor, sink); }, may_reach, sink);
-  if (touching == Found::some && apply.operation == ApplyOperation::intersection)
+  if (touching == Found::some && apply.operation == ApplyOperation::intersection && cells.size() > 1)
     warn_of_scrap(evaluation, cells, part, body_mm, sink);
   if (touching != Found::none) return touching == Found::some;
   const Found kept = any_kept(cells, sink);

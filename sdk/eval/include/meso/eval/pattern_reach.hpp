@@ -21,10 +21,10 @@ namespace meso::eval {
 using MayReach = std::function<bool(const PlacedCell&)>;
 
 /// where cells at records are to cut a body, one of them at least reaches it. Of cells that are placed
-/// otherwise, none may: that is a warning for a difference (PATTERN_MISSES_PART). An intersection warns where the body
-/// is smaller than each cell there (BODY_WITHIN_CELL). Also check_keeps_any(). `body_mm` holds the body so far; empty:
-/// there is none yet. `may_reach` is asked for cells whose boxes touch that; an engine that finds out later leaves it
-/// empty and uses must_reach(). False after an error.
+/// otherwise, none may: that is a warning for a difference (PATTERN_MISSES_PART). An intersection with several cells
+/// warns where the body is smaller than each of those there (BODY_WITHIN_CELL). Also check_keeps_any(). `body_mm` holds
+/// the body so far; empty: there is none yet. `may_reach` is asked for cells whose boxes touch that; an engine that
+/// finds out later leaves it empty and uses must_reach(). False after an error.
 [[nodiscard]] bool check_reach(const Evaluation& evaluation, const CellStream& cells, const Apply& apply,
                                const Part& part, const Box3& body_mm, const MayReach& may_reach, DiagnosticSink& sink);
 
