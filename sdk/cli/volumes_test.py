@@ -150,6 +150,15 @@ class Volumes(unittest.TestCase):
         self.assertEqual(sorted(p.name for p in self.folder.iterdir()),
                          ["a_0001.png", "a_0002.png", "a_0003.png", "b.svg"])
 
+    def test_slices_take_units(self):
+        self.make("a.svg", "-s", "16,16,16", "--slices", "at=0.5")
+        self.make("b.svg", "-s", "16,16,16", "--slices", "at=500um")
+        self.assertEqual((self.folder / "a.svg").read_bytes(), (self.folder / "b.svg").read_bytes())
+        for slices in ("step=2deg", "at=high", "step=-1mm", "count=3mm"):
+            result = subprocess.run([MESO, "sdf", *GYROID, "-o", "c.svg", "--slices", slices], cwd=self.folder, capture_output=True, text=True)
+            self.assertEqual(result.returncode, 2, slices)
+            self.assertIn("step=0.2mm", result.stderr)
+
     def test_options_without_effect_are_usage_errors(self):
         for words in (["-o", "a.ply", "--elements", "5"], ["-o", "a.vtu", "--slices", "at=0"], ["-o", "a.png", "--slices", "at=9"],
                       ["-o", "a.h5", "--voxels", "colour"], ["-o", "a.inp", "--ascii"], ["-o", "a.vti", "--polish"]):

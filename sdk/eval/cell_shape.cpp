@@ -121,7 +121,8 @@ std::optional<Shape> CellStream::shape(const PlacedCell& cell, DiagnosticSink& s
   const PatternProgram& program = *impl_->program;
   const Report report = report_at(*impl_, cell, sink);
   if (program.sets_points) {
-    report(Code::not_yet_evaluated, {program.pattern->id_in_source, {}}, {"set at=\"point\""});
+    report(Code::not_yet_evaluated, {program.pattern->id_in_source, {}},
+           {"set at=\"point\" outside of the implicit engine"});
     return std::nullopt;
   }
   const std::vector<double> slots = slots_of(program, cell);

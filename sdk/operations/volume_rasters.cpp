@@ -9,6 +9,7 @@
 #include "meso/base/number.hpp"
 #include "meso/export_slices/slice_files.hpp"
 #include "meso/export_voxels/voxel_writer.hpp"
+#include "meso/expr/expression.hpp"
 #include "meso/implicit/slices.hpp"
 #include "meso/implicit/voxels.hpp"
 #include "volume_job.hpp"
@@ -60,6 +61,14 @@ struct SliceText {
   std::size_t axis = 2;
 };
 
+std::optional<double> millimeters(std::string_view text) {
+  const auto parsed = expr::parse_expression(text, LengthUnit::millimeter);
+  if (!parsed.expression || !parsed.expression->is_constant()) return std::nullopt;
+  if (text.ends_with("deg") || text.ends_with("rad")) return std::nullopt;
+  const auto value = expr::evaluate(*parsed.expression, {});
+  return value ? std::optional(value.value) : std::nullopt;
+}
+
 std::optional<SliceText> parse_slices(std::string_view text) {
   SliceText out;
   while (!text.empty()) {
@@ -73,7 +82,7 @@ std::optional<SliceText> parse_slices(std::string_view text) {
       out.axis = static_cast<std::size_t>(value[0] - 'x');
       continue;
     }
-    const auto number = parse_number(value);
+    const auto number = key == "count" ? parse_number(value) : millimeters(value);
     if (!number) return std::nullopt;
     if (key == "step" && *number > 0)
       out.step = number;
@@ -91,7 +100,8 @@ std::optional<SliceText> parse_slices(std::string_view text) {
 std::optional<SlicePlan> plan_slices(const VolumeJob& job) {
   const auto text = parse_slices(job.options.slices.value_or(""));
   if (!text) {
-    job.refuse("--slices takes axis=x|y|z and one of step=LENGTH, at=LENGTH, count=N, separated by commas");
+    job.refuse(
+        "--slices takes axis=x|y|z and one of step=LENGTH, at=LENGTH, count=N, separated by commas: axis=z,step=0.2mm");
     return std::nullopt;
   }
   SlicePlan plan{.axis = text->axis};
