@@ -48,8 +48,8 @@ bool fits(const fs::path& out, const MakeOptions& options, const WriteOptions& w
   };
   const auto needs_mesh = output_needs_mesh(out);
   if (!needs_mesh)
-    return refuse("'" + out.string() + "': no format has this extension; convert writes .step .stp .brep, and " +
-                  std::string(mesh_extensions()));
+    return refuse("'" + out.string() + "': no format has this extension; convert writes .step .stp .brep, " +
+                  std::string(mesh_extensions()) + ", and volumes .vtu .msh .inp .nrrd .vti .h5 .svg .png");
   const bool fine = options.deflection_mm || options.angle_rad,
              samples = options.spacing_mm || !options.samples.empty(), of_fields = is_for_fields(options);
   if (!*needs_mesh && fine) return refuse("--deflection and --angle have an effect for meshes only");
