@@ -16,8 +16,6 @@ namespace {
 /// of the mesh that is read.
 constexpr std::uint64_t bytes_per_triangle = 240;
 
-std::string mebibytes(std::uint64_t bytes) { return std::to_string((bytes + (std::uint64_t{1} << 20) - 1) >> 20); }
-
 /// Parts that overlap, or shells within a body that do not face its inside.
 void find_buried(const TriangleTree& tree, MeshQuality& quality) {
   constexpr std::size_t most = 2000;

@@ -8,6 +8,7 @@
 #include "mesh_grid.hpp"
 #include "meso/brep/read_step.hpp"
 #include "meso/brep/triangle_mesh.hpp"
+#include "meso/eval/pattern_reach.hpp"
 #include "meso/import_surface_mesh/read_surface_mesh.hpp"
 #include "meso/sdf/build_field.hpp"
 #include "meso/sdf/clamped_values.hpp"
@@ -61,9 +62,10 @@ std::optional<BuiltField> united(const eval::Evaluation& evaluation, const MakeO
     if (!part) return std::nullopt;
     const implicit::Field placed = implicit::moved(part->field, *placement);
     if (!all)
-      all = BuiltField{placed, item.part->id.text};
+      all = BuiltField{placed, item.part->id.text, item.part};
     else
-      all->field = implicit::union_of(all->field, placed), all->names += ", " + item.part->id.text;
+      all->only_part = nullptr, all->field = implicit::union_of(all->field, placed),
+      all->names += ", " + item.part->id.text;
     all->smallest_feature_mm = std::min(all->smallest_feature_mm, part->smallest_feature_mm);
     all->density_spacing_mm = std::min(all->density_spacing_mm, part->density_spacing_mm);
     all->cells.placed += part->cells_placed;
@@ -78,8 +80,13 @@ std::optional<BuiltField> built_field(const eval::Evaluation& evaluation, const 
                                       DiagnosticSink& sink) {
   auto built = united(evaluation, options, sink);
   if (!built || !built->field.bounds().empty()) return built;
-  sink.report({.code = Code::geometry_empty, .args = {built->names}});
+  sink.report(told_of_empty(*built, evaluation));
   return std::nullopt;
+}
+
+Diagnostic told_of_empty(const BuiltField& built, const eval::Evaluation& evaluation) {
+  if (built.only_part != nullptr) return eval::empty_part(evaluation, *built.only_part);
+  return {.code = Code::geometry_empty, .args = {built.names}};
 }
 
 void warn_of_clamped(const BuiltField& built, const Box3& box, DiagnosticSink& sink) {

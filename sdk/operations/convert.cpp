@@ -169,7 +169,11 @@ std::optional<ConvertReport> convert_to_mesh(const fs::path& in, const fs::path&
         return report;
       }
       if (const Diagnostic* failed = failure(told))
-        sink.report({.code = Code::engine_fallback, .args = {message(*failed)}});
+        sink.report({.code = Code::engine_fallback,
+                     .where = failed->where,
+                     .path = failed->path,
+                     .args = {message(*failed)},
+                     .related = failed->related});
       else
         why = "the exact one answers: " + message(*beyond);
     }

@@ -43,8 +43,10 @@ std::optional<VolumeReport> convert_to_volume(const std::filesystem::path& in, c
   if (is_tetrahedra_output(out) && !options.spacing_mm && options.samples.empty() && !how.elements &&
       !states_samples(evaluation->document(), options.part))
     how.elements = default_elements;
+  DiagnosticSink told;
   auto report =
-      write_volume(out, {built->field, grid->box, grid->nodes, built->words ? &*built->words : nullptr}, how, sink);
+      write_volume(out, {built->field, grid->box, grid->nodes, built->words ? &*built->words : nullptr}, how, told);
+  pass_on_of_grid(told, *evaluation, options, sink);
   if (!report) return std::nullopt;
   warn_of_clamped(*built, grid->box, sink);
   report->seconds += seconds.read + seconds.evaluate;

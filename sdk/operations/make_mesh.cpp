@@ -12,6 +12,7 @@
 #include "mesh_warnings.hpp"
 #include "meso/base/memory_mesh_sink.hpp"
 #include "meso/base/number.hpp"
+#include "meso/eval/cell_fit.hpp"
 #include "meso/export_mesh/mesh_writer.hpp"
 #include "meso/implicit/accurate_mesh.hpp"
 #include "meso/implicit/compile.hpp"
@@ -30,8 +31,10 @@ void warn_of_samples(const BuiltField& built, const MakeOptions& options, const 
                      DiagnosticSink& sink) {
   if (report.mesh) warn_of_cavities(*report.mesh, sink);
   if (built.words && warn_of_period(*built.words, report.spacing_mm, sink)) return;
+  double samples = 1;
+  for (const std::int32_t n : report.grid_nodes) samples *= n;
   const bool is_told = built.smallest_feature_mm < 2 * report.spacing_mm && !options.tolerance_mm;
-  if (!is_told && warn_of_thinness(report.thickness_mm, report.spacing_mm, sink)) return;
+  if (!is_told && warn_of_thinness(report.thickness_mm, {samples, report.spacing_mm}, sink)) return;
   constexpr double promised = 0.002;
   const double finer = built.density_spacing_mm, times = report.spacing_mm / finer;
   if (options.tolerance_mm || !(times > 1.02)) return;
@@ -85,8 +88,8 @@ bool stream_mesh(const BuiltField& built, const implicit::Grid& grid, const Make
 }
 
 /// Into a file, measured on the way if that is asked for.
-bool write_mesh_file(const BuiltField& built, const implicit::Grid& grid, const fs::path& out,
-                     const MakeOptions& options, const WriteOptions& write, ConvertReport& report,
+bool write_mesh_file(const BuiltField& built, const eval::Evaluation& evaluation, const implicit::Grid& grid,
+                     const fs::path& out, const MakeOptions& options, const WriteOptions& write, ConvertReport& report,
                      DiagnosticSink& sink) {
   auto file = OutputFile::create(out.string(), write.no_clobber ? ExistingFile::refuse : ExistingFile::replace, sink);
   if (!file) return false;
@@ -97,7 +100,7 @@ bool write_mesh_file(const BuiltField& built, const implicit::Grid& grid, const 
   const bool made =
       stream_mesh(built, grid, options, options.measure ? static_cast<MeshSink&>(measured) : *writer, report, sink);
   if (made && report.triangles == 0) {  // what stands at `out` stays
-    sink.report({.code = Code::geometry_empty, .args = {built.names}});
+    sink.report(told_of_empty(built, evaluation));
     return false;
   }
   if (sink.error_count() > errors || !file->commit(sink) || !made) return false;
@@ -123,6 +126,7 @@ std::optional<eval::Evaluation> open_document(const fs::path& document, const Ma
                                                   .distance = macrostructure_distance(options.overrides, options.run)},
                                                  sink)
                         : std::nullopt;
+  if (evaluation) eval::warn_of_misfits(*evaluation, sink);
   seconds.evaluate = watch.lap();
   return evaluation;
 }
@@ -136,7 +140,12 @@ std::optional<ConvertReport> make_mesh(const eval::Evaluation& evaluation, const
   if (!grid) return std::nullopt;
   ConvertReport report{.engine = "implicit", .way = "field", .cells = built->cells, .closed = true};
   report.seconds.realise = watch.lap();
-  if (!write_mesh_file(*built, *grid, out, options, write, report, sink)) return std::nullopt;
+  // To a tolerance, what is told helps most before the work is done.
+  const bool is_streamed = !options.tolerance_mm && !options.simplify_mm;
+  DiagnosticSink told;
+  const bool made = write_mesh_file(*built, evaluation, *grid, out, options, write, report, is_streamed ? told : sink);
+  pass_on_of_grid(told, evaluation, options, sink);
+  if (!made) return std::nullopt;
   report.seconds.write = watch.lap();
   warn_of_clamped(*built, grid->box, sink);
   warn_of_samples(*built, options, report, sink);

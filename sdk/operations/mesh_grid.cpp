@@ -139,6 +139,22 @@ std::optional<Grid> mesh_grid(const eval::Evaluation& evaluation, const MakeOpti
   return grid;
 }
 
+void pass_on_of_grid(const DiagnosticSink& told, const eval::Evaluation& evaluation, const MakeOptions& options,
+                     DiagnosticSink& sink) {
+  const MeshSettings* stated = settings_of(evaluation.document(), options.part);
+  const SourceMap& source = evaluation.checked().source();
+  const bool by_document = stated != nullptr && stated->samples && options.samples.empty() && !options.spacing_mm;
+  for (Diagnostic d : told.diagnostics()) {
+    if ((d.code == Code::limit_grid || d.code == Code::limit_grid_memory) && d.where.file.empty()) {
+      if (by_document)
+        d.where = source.span(stated->id_in_source, "samples"), d.path = source.path(stated->id_in_source, "samples");
+      else
+        d.where.file = source.span(evaluation.document().id_in_source).file;
+    }
+    sink.report(std::move(d));
+  }
+}
+
 bool states_samples(const Document& document, const std::string& part_id) {
   const MeshSettings* stated = settings_of(document, part_id);
   return stated != nullptr && stated->samples;

@@ -24,6 +24,10 @@ struct PlacedPart {
                                                       const Box3& bounds, double smallest_feature_mm,
                                                       DiagnosticSink& sink);
 
+/// What was told of a grid, with the place where the document says how fine it is; of others, with the document's name.
+void pass_on_of_grid(const DiagnosticSink& told, const eval::Evaluation& evaluation, const MakeOptions& options,
+                     DiagnosticSink& sink);
+
 /// Whether that part's <mesh>, or the build's, says how many samples.
 [[nodiscard]] bool states_samples(const Document& document, const std::string& part_id);
 

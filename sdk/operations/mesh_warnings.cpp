@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "mesh_warnings.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "meso/base/number.hpp"
@@ -17,6 +18,13 @@ std::string significant(double value, int digits) {
   return format_number(unit < 1 ? units / std::round(1 / unit) : units * unit);
 }
 
+/// A count of two digits, without an exponent.
+static std::string in_full(double count) {
+  const double unit = std::pow(10.0, std::max(0.0, std::floor(std::log10(count)) - 1));
+  constexpr double most = 1e15;
+  return count < most ? std::to_string(std::llround(std::ceil(count / unit) * unit)) : format_number(count);
+}
+
 double thickness_of(const TriangleMesh& mesh) {
   double volume = 0, area = 0;
   if (mesh.points.empty()) return 0;
@@ -29,9 +37,12 @@ double thickness_of(const TriangleMesh& mesh) {
   return area > 0 ? 2 * volume / area : 0;
 }
 
-bool warn_of_thinness(double thickness_mm, double spacing_mm, DiagnosticSink& sink) {
-  if (!(thickness_mm > 0 && thickness_mm < spacing_mm)) return false;
-  sink.report({.code = Code::sdf_coarse, .args = {significant(thickness_mm, 3), significant(spacing_mm, 3)}});
+bool warn_of_thinness(double thickness_mm, const Seen& seen, DiagnosticSink& sink) {
+  if (!(thickness_mm > 0 && thickness_mm < seen.spacing_mm)) return false;
+  const double enough = thickness_mm / 2, finer = seen.spacing_mm / enough;
+  sink.report({.code = Code::sdf_coarse,
+               .args = {significant(thickness_mm, 3), significant(seen.spacing_mm, 3),
+                        in_full(seen.count * finer * finer * finer), seen.called, significant(enough, 2)}});
   return true;
 }
 

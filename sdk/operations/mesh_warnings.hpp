@@ -17,8 +17,13 @@ namespace meso::operations {
 /// Twice the volume over the area; 0 of nothing.
 [[nodiscard]] double thickness_of(const TriangleMesh& mesh);
 
-/// Walls and struts thinner than the spacing: SDF_COARSE. True if it was told.
-bool warn_of_thinness(double thickness_mm, double spacing_mm, DiagnosticSink& sink);
+/// What a thickness was seen with: "samples" or "elements".
+struct Seen {
+  double count = 0, spacing_mm = 0;
+  const char* called = "samples";
+};
+/// Walls and struts thinner than the spacing: SDF_COARSE, and how many would do. True if it was told.
+bool warn_of_thinness(double thickness_mm, const Seen& seen, DiagnosticSink& sink);
 
 /// Fewer than four samples a period: PERIOD_BELOW_SPACING. True if it was told.
 bool warn_of_period(const sdf::Program& program, double spacing_mm, DiagnosticSink& sink);

@@ -246,7 +246,9 @@ void Job::warn(const Output& output) const {
     point_at(d, word);
     sink_.report(std::move(d));
   } else if (!warn_of_period(program_, spacing, sink_) && !rounded) {
-    warn_of_thinness(thickness_, spacing, sink_);
+    double samples = 1;
+    for (const std::int32_t n : report_.grid.nodes) samples *= n;
+    warn_of_thinness(thickness_, {samples, spacing}, sink_);
   }
 }
 

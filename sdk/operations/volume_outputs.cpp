@@ -153,8 +153,9 @@ bool write_tetrahedra(VolumeJob& job) {
     job.sink.report({.code = Code::sdf_empty, .args = {job.path}});
   } else if (job.words != nullptr && warn_of_period(*job.words, lattice.spacing, job.sink)) {
     // It is not that solid: nothing else counts.
-  } else if (const double thickness = thickness_of(mesh, quality.volume); thickness < lattice.spacing) {
-    job.sink.report({.code = Code::sdf_coarse, .args = {format_number(thickness), format_number(lattice.spacing)}});
+  } else {
+    const double elements = static_cast<double>(mesh.tets.size());
+    warn_of_thinness(thickness_of(mesh, quality.volume), {elements, lattice.spacing, "elements"}, job.sink);
   }
   return true;
 }

@@ -6,8 +6,10 @@
 #include <numbers>
 
 #include "arguments.hpp"
+#include "filling.hpp"
 #include "meso/base/number.hpp"
 #include "meso/implicit/density_table.hpp"
+#include "meso/implicit/point_function.hpp"
 #include "meso/implicit/surfaces.hpp"
 #include "meso/sdf/solid_tree.hpp"
 #include "place_of_solid.hpp"
@@ -25,6 +27,7 @@ namespace {
 struct Solid {
   Field field;
   Vec3 period{};
+  std::optional<Filling> filling{};  ///< of a share of each period
 };
 
 class Builder {
@@ -46,7 +49,10 @@ class Builder {
     const Instruction& instruction = *node.made_by;
     if (node.of.empty()) return leaf(instruction);
     const Solid& below = solids_[node.of[0]];
-    return node.of.size() == 1 ? changed(instruction, below) : Solid{joined(instruction, below.field, node)};
+    if (node.of.size() == 1) return changed(instruction, below);
+    const Solid& above = solids_[node.of[1]];
+    if (instruction.verb == Verb::blend) return blended(instruction, below, above);
+    return Solid{joined(instruction, below.field, above.field)};
   }
 
   std::optional<Solid> leaf(const Instruction& instruction) {
@@ -97,10 +103,11 @@ class Builder {
       case Verb::density:
         return filled(instruction, solid);
       case Verb::move:
-        return Solid{f.translated(v), solid.period};
+        return moved(solid, f.translated(v), Affine::from_translation(-v), solid.period);
       case Verb::scale:
-        return Solid{v.x == v.y && v.y == v.z ? f.scaled(v.x) : f.scaled(v),
-                     {std::abs(v.x) * solid.period.x, std::abs(v.y) * solid.period.y, std::abs(v.z) * solid.period.z}};
+        return moved(solid, v.x == v.y && v.y == v.z ? f.scaled(v.x) : f.scaled(v),
+                     Affine::from_rows({1 / v.x, 0, 0, 0, 0, 1 / v.y, 0, 0, 0, 0, 1 / v.z, 0}),
+                     {std::abs(v.x) * solid.period.x, std::abs(v.y) * solid.period.y, std::abs(v.z) * solid.period.z});
       case Verb::rotate:
         return Solid{f.rotated(v, n[3])};
       case Verb::orient:
@@ -110,11 +117,13 @@ class Builder {
       default:
         break;
     }
-    const Term term = f.term();
-    if (term.has_external())
-      return fault(instruction, "meshes and shares that differ from point to point cannot be bent or repeated");
-    const Term there = term.with(bent(instruction));
+    const Term there = implicit::taken_from(f.term(), bent(instruction));
     return Solid{Field::from_term(there), instruction.verb == Verb::repeat ? v : Vec3{}};
+  }
+
+  static Solid moved(const Solid& from, const Field& field, const Affine& source_from_target, Vec3 period) {
+    return {field, period,
+            from.filling ? std::optional(from.filling->moved(source_from_target, period)) : std::nullopt};
   }
 
   static Field level(const Instruction& instruction, const Field& f) {
@@ -139,12 +148,27 @@ class Builder {
     const Term f = solid.field.term();
     const auto table = std::make_shared<const implicit::DensityTable>(
         [&](auto) { return f; }, implicit::DensityTable::Room{{}, period}, std::vector<implicit::Interval>{});
-    if (instruction.text.empty()) return Solid{solid.field.offset(table->level(instruction.numbers[0], {})), period};
-    return Solid{Field::from_term(f - density_level(table, term_of(instruction.text), {}))};
+    if (instruction.text.empty())
+      return Solid{solid.field.offset(table->level(instruction.numbers[0], {})), period,
+                   Filling(f, period, Term::constant(instruction.numbers[0]))};
+    const Term share = term_of(instruction.text);
+    return Solid{Field::from_term(f - density_level(table, share, {})), {}, Filling(f, period, share)};
   }
 
-  Field joined(const Instruction& instruction, const Field& below, const SolidTree::Node& node) const {
-    const Field& above = solids_[node.of[1]].field;
+  std::optional<Solid> blended(const Instruction& instruction, const Solid& below, const Solid& above) {
+    const Term weight = Term::apply(Op::clamp, {term_of(instruction.text), Term::constant(0), Term::constant(1)});
+    const auto filling =
+        below.filling && above.filling ? Filling::blended(*below.filling, *above.filling, weight) : std::nullopt;
+    if (!filling) {
+      const Term a = below.field.term();
+      return Solid{Field::from_term(a + weight * (above.field.term() - a))};
+    }
+    if (filling->varying() > Filling::most_varying)
+      return fault(instruction, "densities of at most three solids blend by formulas; state an offset for the others");
+    return Solid{Field::from_term(filling->body()), {}, filling};
+  }
+
+  static Field joined(const Instruction& instruction, const Field& below, const Field& above) {
     switch (instruction.verb) {
       case Verb::union_of:
         return union_of(below, above);
@@ -152,14 +176,9 @@ class Builder {
         return intersection_of(below, above);
       case Verb::difference:
         return difference_of(below, above);
-      case Verb::smooth_union:
-        return union_of(below, above, instruction.numbers[0]);
       default:
-        break;
+        return union_of(below, above, instruction.numbers[0]);
     }
-    const Term a = below.term();
-    const Term weight = Term::apply(Op::clamp, {term_of(instruction.text), Term::constant(0), Term::constant(1)});
-    return Field::from_term(a + weight * (above.term() - a));
   }
 
   std::optional<Solid> surface(const Instruction& instruction) {

@@ -169,6 +169,49 @@ TEST(BuildField, DensityFillsItsShareOfThePeriod) {
   EXPECT_NEAR(share(field_of("tpms.gyroid scale 1/4 density '0.2 + 0.2*x'")), 0.3, 5e-3);
 }
 
+// Half of one function and half of another, each at its own level, would fill 0.196 of the first of these cubes.
+TEST(BuildField, BlendsOfDensitiesKeepTheShare) {
+  EXPECT_NEAR(share(field_of("tpms.gyroid density 0.3 tpms.p density 0.3 blend 0.5")), 0.3, 4e-3);
+  EXPECT_NEAR(share(field_of("tpms.gyroid density 0.15 tpms.iwp density 0.15 blend 0.7")), 0.15, 4e-3);
+  EXPECT_NEAR(share(field_of("tpms.gyroid density 0.2 tpms.p density 0.4 blend 0.5")), 0.3, 4e-3);
+  EXPECT_NEAR(share(field_of("strut.bcc 0.1 scale 1/2 density 0.2 tpms.p scale 1/2 density 0.2 blend 0.3")), 0.2, 4e-3);
+  const Field three = field_of("tpms.gyroid density 0.3 tpms.p density 0.3 blend y/4 tpms.d density 0.3 blend z/4");
+  EXPECT_NEAR(share(three.scaled(0.25)), 0.3, 6e-3);
+  // Moved and scaled behind the density: still a share of each period.
+  EXPECT_NEAR(share(field_of("tpms.gyroid density 0.3 move 0.2,0,0 scale 0.5 tpms.p scale 0.5 density 0.3 blend 0.5")),
+              0.3, 4e-3);
+}
+
+TEST(BuildField, AtItsEndsABlendOfDensitiesIsOneOfTheTwo) {
+  const std::string one = "tpms.gyroid density 0.3", other = "tpms.p density 0.4", both = one + " " + other + " blend ";
+  for (const auto& [end, same] :
+       {std::pair(field_of(both + "0"), field_of(one)), {field_of(both + "1"), field_of(other)}})
+    for (const Vec3 p : {Vec3{0.1, 0.2, 0.3}, Vec3{0.7, 0.2, 0.1}, Vec3{0.4, 0.45, 0.9}, Vec3{0.9, 0.6, 0.2}})
+      EXPECT_EQ(end.value(p) < 0, same.value(p) < 0);
+}
+
+TEST(BuildField, DensitiesOfDifferentPeriodsBlendAsTheyAre) {
+  const Vec3 p{0.3, 0.1, 0.4};
+  const double f = value_of("tpms.gyroid density 0.3", p), g = value_of("tpms.p scale 2 density 0.3", p);
+  EXPECT_NEAR(value_of("tpms.gyroid density 0.3 tpms.p scale 2 density 0.3 blend 0.25", p), 0.75 * f + 0.25 * g, 1e-12);
+}
+
+TEST(BuildField, AtMostThreeDensitiesBlendByFormulas) {
+  DiagnosticSink sink;
+  const auto program = program_of(
+      "tpms.gyroid density 0.3 tpms.p density 0.3 blend x tpms.d density 0.3 blend y tpms.iwp density 0.3 blend z");
+  EXPECT_FALSE(build_field(*program, {}, sink));
+  ASSERT_EQ(sink.diagnostics().size(), 1u);
+  EXPECT_EQ(sink.diagnostics()[0].code, Code::sdf_value);
+}
+
+TEST(BuildField, WhatIsLookedUpIsBentAsWell) {
+  const Field tube = field_of("tpms.gyroid density '0.3 + 0.05*z' cylindrical 8");
+  EXPECT_NEAR(tube.value({1.25, 0, 0.4}), value_of("tpms.gyroid density '0.3 + 0.05*z'", {1.25, 0, 0.4}), 1e-12);
+  const double turn = 2 * std::numbers::pi / 8;
+  EXPECT_NEAR(tube.value({1.25 * std::cos(turn), 1.25 * std::sin(turn), 0.4}), tube.value({1.25, 0, 0.4}), 1e-9);
+}
+
 TEST(BuildField, StrutsAreDistancesToTheLibrarysStruts) {
   // The centre of a body-centred cell is a node with a ball of 1.8 radii; its struts end at the corners.
   EXPECT_NEAR(value_of("strut.bcc 0.05", {0.5, 0.5, 0.5}), -0.09, 1e-12);

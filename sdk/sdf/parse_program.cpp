@@ -343,7 +343,24 @@ class ProgramParser {
       if (const std::string first = word.text.substr(0, space); find_vocable(first) != nullptr)
         return fail(word, Code::sdf_unknown_word,
                     {word.text, "; leave out the quotation marks: each word is one argument"});
-    return fail(word, Code::sdf_unknown_word, {word.text, suggestion(nearest_word(word.text))});
+    const std::string misplaced = of_numbers_and_files(word.text);
+    return fail(word, Code::sdf_unknown_word,
+                {word.text, misplaced.empty() ? suggestion(nearest_word(word.text)) : misplaced});
+  }
+
+  /// `ball 5`, `torus 2 0.5`, `ball out.stl`: what stands where a word should.
+  [[nodiscard]] std::string of_numbers_and_files(const std::string& text) const {
+    for (const std::string_view mesh : {".ply", ".stl", ".3mf", ".obj", ".off", ".vtk", ".meso"})
+      if (text.ends_with(mesh))
+        return "; -o " + text + " writes it" + (mesh == ".meso" ? "" : ", file " + text + " reads it");
+    if (program_.instructions.empty() || read_numbers(text, {1, 2, 3, 4, 6, 7}).fault) return "";
+    const Instruction& before = program_.instructions.back();
+    const Vocable* vocable = find_vocable(before.word.text);
+    if (vocable == nullptr || (vocable->argument.empty() && vocable->takes == 0))
+      return "; '" + before.word.text + "' takes no size: 'scale " + text + "' behind it scales it";
+    if (vocable->argument.empty()) return "; '" + before.word.text + "' takes no number";
+    return "; '" + before.word.text + "' takes " + std::string(vocable->argument) +
+           ", separated by commas without spaces";
   }
 
   /// With what the word takes: who does not know its name does not know that either.

@@ -90,6 +90,14 @@ class Making {
   Look look_at(const TriangleMesh& mesh, double spacing);
   [[nodiscard]] static double farthest_on(const Grid& grid);
   bool resolve(Grid grid);
+  /// What refining comes to where it does not mend what is far.
+  struct Stubborn {
+    std::size_t far = 0;
+    double distance = HUGE_VAL;
+    int rounds = 0;  ///< that made it worse
+    std::optional<RefinableMesh> closest{};
+  };
+  bool gets_no_closer(Stubborn& so_far, std::size_t halved) const;
   enum class Refined { done, stopped, too_large };
   Refined refine();
   bool refine_or_tell();
@@ -103,6 +111,7 @@ class Making {
   [[nodiscard]] double finer_for(double distance, double most) const;
   [[nodiscard]] double triangles_of_finer(double distance) const;
   void expect(double triangles);
+  void tell_of(double triangles);
   [[nodiscard]] bool fits(double triangles);
   /// The same; tells where it does not.
   [[nodiscard]] bool affords(double triangles);
@@ -121,6 +130,7 @@ class Making {
   AccurateMesh out_;
   double grid_triangles_ = 0;
   double expected_ = 0;     // triangles of what is under way
+  double told_ = 0;         // the most that was told of
   RefinableMesh::Far far_;  // of the mesh that is taken
   std::optional<Diagnostic> left_;
   bool spares_ = false;     // most of the triangles are more than curves ask for
@@ -182,7 +192,7 @@ Diagnostic Making::not_reached(double bound) const {
   const Vec3 p = far_.place;
   return {.code = Code::tolerance_not_reached,
           .args = {rounded_beyond(out_.distance, bound), format_number(bound), std::to_string(far_.triangles),
-                   rounded(p.x) + " " + rounded(p.y) + " " + rounded(p.z)}};
+                   rounded(p.x) + " " + rounded(p.y) + " " + rounded(p.z), std::to_string(out_.mesh.triangles.size())}};
 }
 
 Diagnostic Making::takes(double triangles, double least_bytes) const {
@@ -206,6 +216,20 @@ void Making::pass_on(const DiagnosticSink& told) {
     const double least = is_grid ? parse_number(d.args.at(1)).value_or(0) * (1 << 20) : 0;
     diagnostics_.report(is_grid ? takes(expected_, least) : d);
   }
+}
+
+// Before what takes long: seconds at least. Again where it comes to more.
+void Making::tell_of(double triangles) {
+  constexpr double more = 2;
+  const double worth_telling = is_smooth() ? 2e6 : 5e5;
+  if (options_.tolerance <= 0 || triangles < std::max(worth_telling, more * told_)) return;
+  told_ = triangles;
+  std::string samples;
+  for (const std::int32_t n : out_.grid.nodes) samples += (samples.empty() ? "" : " x ") + std::to_string(n);
+  diagnostics_.report(
+      {.code = Code::tolerance_takes,
+       .args = {format_number(options_.tolerance), format_number(parse_number(rounded(triangles, 2)).value_or(0)),
+                samples, format_number(parse_number(rounded(bytes_for(triangles) / (1 << 20), 2)).value_or(0))}});
 }
 
 bool Making::fits(double triangles) {
@@ -320,6 +344,7 @@ bool Making::resolve(Grid grid) {
     const Look look = look_at(out_.mesh, spacing);
     if (!go_on()) return false;
     expect(std::max(grid_triangles_, look.triangles_for));
+    tell_of(expected_);
     // What goes astray beside edges of the surface is a share that goes with the spacing; it is refined where it is.
     // What is too thin for the grid is gone on a grid that is finer.
     const bool only_edges = !is_smooth() && look.astray <= 4 * few_astray &&
@@ -341,6 +366,24 @@ bool Making::resolve(Grid grid) {
   return go_on();
 }
 
+// When little is left, and twice in a row more of it is as far as before, halving makes it worse: two sheets within a
+// cell, say, of which the mesh has one. The closest mesh is kept, where memory holds two.
+bool Making::gets_no_closer(Stubborn& so_far, std::size_t halved) const {
+  constexpr std::size_t little = 20;
+  constexpr double as_far = 0.9;
+  constexpr int enough = 2;
+  const double distance = refinable_->distance();
+  const std::size_t far = refinable_->what_is_far(options_.tolerance).triangles,
+                    all = refinable_->mesh().triangles.size();
+  const bool is_worse = far >= so_far.far && distance >= as_far * so_far.distance && !refinable_->found_creases();
+  so_far.rounds = is_worse ? so_far.rounds + 1 : 0;
+  so_far.far = far, so_far.distance = distance;
+  if (little * halved >= all) return false;
+  const bool two_fit = 2 * bytes_for(static_cast<double>(all)) <= static_cast<double>(run_.max_memory_bytes);
+  if (two_fit && (!so_far.closest || distance < so_far.closest->distance())) so_far.closest.emplace(*refinable_);
+  return so_far.rounds >= enough;
+}
+
 Making::Refined Making::refine() {
   constexpr int most_rounds = 24;
   const double aim = this->aim();
@@ -348,8 +391,10 @@ Making::Refined Making::refine() {
   int patience = 4 + static_cast<int>(std::log2(longer) / 2);  // a round takes distances to a quarter
   double left_before = HUGE_VAL;
   std::vector<std::size_t> before;
+  Stubborn stubborn;
   for (int round = 0; round < most_rounds; ++round) {
-    run_.report("refining", static_cast<double>(round) / most_rounds);
+    const double times = std::max(1.0, refinable_->distance() / aim);
+    run_.report("refining", longer > 1 ? std::max(0.0, 1 - std::log(times) / std::log(longer)) : 0);
     if (!fits(std::max(refinable_->triangles_for(aim), static_cast<double>(refinable_->mesh().triangles.size()))))
       return Refined::too_large;
     // Not at once: creases are better.
@@ -363,6 +408,7 @@ Making::Refined Making::refine() {
     if (const double left = refinable_->distance(); left > options_.tolerance && left > 0.7 * left_before)
       finer_takes_ = std::max(finer_takes_, triangles_of_finer(left));  // no refining mends that
     left_before = refinable_->distance();
+    if (left_before > options_.tolerance && gets_no_closer(stubborn, halved)) break;
     // Where as many edges are halved as before, what is refined is no surface.
     before.push_back(halved);
     // A few creases may be found when all else is done.
@@ -370,10 +416,13 @@ Making::Refined Making::refine() {
       patience = std::max(patience, round + 4);
     if (round >= patience && halved >= before[static_cast<std::size_t>(round - 4)]) break;
   }
+  if (stubborn.closest && refinable_->distance() > std::max(stubborn.closest->distance(), options_.tolerance))
+    refinable_.emplace(std::move(*stubborn.closest));
   return go_on() ? Refined::done : Refined::stopped;
 }
 
 bool Making::refine_or_tell() {
+  tell_of(std::max(refinable_->triangles_for(aim()), grid_triangles_));
   const Refined refined = refine();
   if (refined == Refined::too_large) diagnostics_.report(takes(expected_));
   return refined == Refined::done;
@@ -400,15 +449,15 @@ bool Making::to_tolerance(const Grid& first) {
 // twice the tolerance has to be seen by the grid. The closest of all meshes is taken. What is missed then is little, so
 // it is not worth any memory and time.
 bool Making::take_refined() {
-  constexpr int most_attempts = 4;
-  constexpr double least_finer = 1.3, little_finer = 1.5, much_closer = 0.7;
+  constexpr int most_attempts = 5;
+  constexpr double least_finer = 1.3, little_finer = 1.5, much_closer = 0.7, little_missing = 1.5;
   constexpr double few_triangles = 5e5;
   constexpr double most_spare = 3, least_spared = 5e4;  // fewer are not worth the time
   constexpr double bytes_to_thin = 500;
   AccurateMesh best;
   bool lacks_memory = false;
   std::size_t far_before = 0;
-  double distance_before = 0;
+  double distance_before = 0, spacing_before = 0;
   for (int attempt = 1;; ++attempt) {
     const double distance = refinable_->distance();
     const auto triangles = static_cast<double>(refinable_->mesh().triangles.size());
@@ -425,9 +474,14 @@ bool Making::take_refined() {
     expect(finer_takes_);
     lacks_memory = lacks_memory || bytes_for(finer_takes_) > static_cast<double>(run_.max_memory_bytes);
     // Of holes and bridges, a finer grid leaves none or few; as many are something else.
-    const bool helps = attempt == 1 || triangles < few_triangles || far.triangles < far_before / 2 ||
-                       distance < much_closer * distance_before;
-    far_before = far.triangles, distance_before = distance;
+    const double spacing = largest_spacing(best.grid);
+    const auto comes_there = [&] {  // if distances go on with the spacing as they did
+      const double order = std::log(distance_before / distance) / std::log(spacing_before / spacing);
+      return triangles * std::pow(distance / options_.tolerance, 2 / std::max(order, 0.1)) < most_triangles;
+    };
+    const bool helps = attempt == 1 || triangles < few_triangles || distance < little_missing * options_.tolerance ||
+                       far.triangles < far_before / 2 || (distance < much_closer * distance_before && comes_there());
+    far_before = far.triangles, distance_before = distance, spacing_before = spacing;
     if (attempt == most_attempts || !helps) break;
     const double affordable =
         std::min(most_triangles, static_cast<double>(run_.max_memory_bytes) / RefinableMesh::bytes_per_triangle / 2);
@@ -452,6 +506,8 @@ bool Making::thin() {
   constexpr double share = 0.6, least_gain = 0.8;
   AccurateMesh whole = std::move(out_);
   std::vector<char> kept = beside_wedges(whole.mesh);
+  // As many as before were too far, with all kept around them: this is not about what was taken away.
+  std::size_t far_before = whole.distance > options_.tolerance ? 2 * far_.triangles : SIZE_MAX;
   for (int attempt = 0; attempt < most_attempts; ++attempt) {
     out_ = {.mesh = whole.mesh, .grid = whole.grid, .euler = whole.euler};
     refinable_.reset();
@@ -471,6 +527,9 @@ bool Making::thin() {
       out_.mesh = refinable_->take();
       return true;
     }
+    const std::size_t far = refinable_->what_is_far(options_.tolerance).triangles;
+    if (far >= far_before / 2) break;
+    far_before = far;
     refinable_->mark_around_far(options_.tolerance, feet_->cell(), whole.mesh.points, kept);
   }
   out_ = std::move(whole);

@@ -409,6 +409,68 @@ TEST(AccurateMesh, SaysWhereItCannotBeReached) {
   EXPECT_TRUE(audit_mesh(result->mesh).watertight());
 }
 
+// The tolerance is reached; what --simplify asks for beyond it is not.
+TEST(AccurateMesh, SimplifiedToLessThanTheToleranceTellsWhatItIs) {
+  DiagnosticSink diagnostics;
+  const auto result =
+      make_accurate_mesh(on(ball), {.box = cube()}, {.tolerance = 1e-2, .simplify = 1e-4}, {}, diagnostics);
+  ASSERT_TRUE(result);
+  EXPECT_TRUE(audit_mesh(result->mesh).watertight());
+  EXPECT_GT(result->distance, 1e-4);
+  EXPECT_LE(farthest(result->mesh, off_ball), result->distance);
+  EXPECT_LE(result->distance, 1e-2);
+  ASSERT_EQ(diagnostics.diagnostics().size(), 1u) << "one warning a mesh";
+  const Diagnostic& told = diagnostics.diagnostics()[0];
+  EXPECT_EQ(told.code, Code::tolerance_not_reached) << render(told);
+  EXPECT_EQ(told.args[1], "1e-04");
+}
+
+TEST(AccurateMesh, WhatIsTooLargeIsToldWhileItGrows) {
+  int rounds = 0;
+  const RunOptions run{.max_memory_bytes = 60 << 20,
+                       .progress = [&](std::string_view stage, double) { rounds += stage == "refining" ? 1 : 0; }};
+  DiagnosticSink diagnostics;
+  EXPECT_FALSE(make_accurate_mesh(on(ball), {.box = cube()}, {.tolerance = 4e-5, .sharp = false}, run, diagnostics));
+  EXPECT_EQ(rounds, 1) << "neither before the work nor after more of it";
+  ASSERT_EQ(diagnostics.error_count(), 1u);
+  EXPECT_EQ(diagnostics.diagnostics().back().code, Code::limit_tolerance);
+}
+
+TEST(AccurateMesh, SaysHowManyTrianglesBeforeItRefinesThem) {
+  bool has_begun = false;
+  const RunOptions run{.progress = [&](std::string_view stage, double) { has_begun |= stage == "refining"; },
+                       .cancelled = [&] { return has_begun; }};
+  DiagnosticSink diagnostics;
+  EXPECT_FALSE(make_accurate_mesh(on(ball), {.box = cube()}, {.tolerance = 1e-5}, run, diagnostics));
+  ASSERT_FALSE(diagnostics.diagnostics().empty());
+  const Diagnostic& told = diagnostics.diagnostics()[0];
+  ASSERT_EQ(told.code, Code::tolerance_takes) << render(told);
+  // A sphere takes no less than 4 pi r^2 / (3 sqrt(3) r tolerance) triangles.
+  EXPECT_GT(std::stod(told.args[1]), 4 * pi * 0.8 / (3 * std::sqrt(3) * 1e-5));
+  EXPECT_LT(std::stod(told.args[1]), 12 * 4 * pi * 0.8 / (3 * std::sqrt(3) * 1e-5));
+}
+
+// Of a distance that is hardly more than the bound, as many digits are told as tell the two apart.
+TEST(AccurateMesh, TellsDistancesBeyondTheBoundAsSuch) {
+  const Grid coarse{.box = cube(), .nodes = {12, 12, 12}};
+  std::size_t digits = 0;
+  double low = 1e-3, high = 0.1;
+  for (int step = 0; step < 30; ++step) {
+    const double bound = (low + high) / 2;
+    DiagnosticSink diagnostics;
+    ASSERT_TRUE(make_accurate_mesh(on(ball), coarse, {.simplify = bound}, {}, diagnostics));
+    if (diagnostics.diagnostics().empty()) {
+      high = bound;
+      continue;
+    }
+    low = bound;
+    const Diagnostic& told = diagnostics.diagnostics()[0];
+    EXPECT_GT(std::stod(told.args[0]), bound) << render(told);
+    digits = std::max(digits, told.args[0].size());
+  }
+  EXPECT_GT(digits, std::string("0.01234").size()) << "or no bound was near";
+}
+
 TEST(AccurateMesh, IsEmptyOutside) {
   const AccurateMesh result = made([](Vec3) { return 1.0; }, {.box = cube()}, {.tolerance = 1e-2, .simplify = 1e-2});
   EXPECT_TRUE(result.mesh.triangles.empty());

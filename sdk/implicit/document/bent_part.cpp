@@ -2,45 +2,12 @@
 #include "bent_part.hpp"
 
 #include <array>
-#include <cmath>
 
 #include "coordinate_inverse.hpp"
 #include "meso/implicit/point_function.hpp"
 #include "volume_element.hpp"
 
 namespace meso::implicit {
-namespace {
-
-/// Of a function with leaves that are asked, which no term takes along: struts, meshes.
-class Bent final : public PointFunction {
- public:
-  Bent(const Term& solid, const std::array<Term, 3>& source)
-      : solid_(solid), source_{FlatTerm(source[0]), FlatTerm(source[1]), FlatTerm(source[2])} {}
-
-  void values(std::span<const Vec3> points, double* out) const override {
-    std::vector<Vec3> sources(points.size());
-    for (std::size_t a = 0; a < 3; ++a) {
-      source_[a].values(points, {out, points.size()});
-      for (std::size_t n = 0; n < points.size(); ++n) sources[n][a] = out[n];
-    }
-    solid_.values(sources, {out, points.size()});
-  }
-  [[nodiscard]] Interval interval(const Box3& box) const override {
-    Box3 from;
-    for (std::size_t a = 0; a < 3; ++a) {
-      const Interval range = source_[a].interval(box);
-      if (range.undefined || !std::isfinite(range.lo) || !std::isfinite(range.hi)) return Interval::everything();
-      from.min[a] = range.lo, from.max[a] = range.hi;
-    }
-    return solid_.interval(from);
-  }
-
- private:
-  FlatTerm solid_;
-  std::array<FlatTerm, 3> source_;
-};
-
-}  // namespace
 
 std::optional<Field> bent_part(const eval::CellStream& cells, const eval::PlacedCell& cell, const Field& part,
                                const Reporter& report) {
@@ -65,10 +32,7 @@ std::optional<Field> bent_part(const eval::CellStream& cells, const eval::Placed
     const double edge = box->size[a] / cell.step[a];
     source[a] = edge * (*q)[a].q - (edge * cell.q[a] - box->corner[a]);
   }
-  const Term solid = part.term();
-  const Field bent = solid.has_external() ? Field::external(std::make_shared<const Bent>(solid, source))
-                                          : Field::from_term(solid.with(source));
-  return intersection_of(bent, *walls);
+  return intersection_of(Field::from_term(taken_from(part.term(), source)), *walls);
 }
 
 }  // namespace meso::implicit

@@ -162,13 +162,14 @@ TEST(Gradings, DensitiesThatNoLevelReachesTellWhatCanBe) {
   const TestDocument flat(block("<implicit field='max(z - 5, 0)' density='0.3'/>", "", 1, 1, 1));
   EXPECT_FALSE(flat.made);
   ASSERT_EQ(flat.code(), Code::density_unreachable) << told(flat.sink);
-  EXPECT_NE(told(flat.sink).find("it can fill 0.5 to less than 1"), std::string::npos) << told(flat.sink);
+  EXPECT_NE(told(flat.sink).find("shares between 0.5 and 1 are possible"), std::string::npos) << told(flat.sink);
   // A law that leaves 0 ... 1 says where.
   const TestDocument law(block("<implicit surface='p' density='rho'/>",
                                "<set parameter='rho' value='global.x/10' at='point'/>", 2, 1, 1,
                                "<parameter id='rho' value='0.4'/>"));
   EXPECT_FALSE(law.made);
   EXPECT_EQ(law.code(), Code::density_unreachable) << told(law.sink);
+  EXPECT_EQ(law.sink.diagnostics()[0].path.substr(law.sink.diagnostics()[0].path.size() - 8), "@density");
 }
 
 /// Lengths of what a line cuts out of the body, around each of its crossings of the function's zero.

@@ -48,23 +48,14 @@ Term ImplicitCells::surface_at(const Surface& surface, const eval::BoxShape& box
   return Term::from_expression(*parsed.expression, terms);
 }
 
-/// A surface in a blend is divided by this, so that equal weights mean equal parts. The mean over one period; for sums
-/// of sines that of a regular grid is exact.
+/// A surface in a blend is divided by this, so that equal weights mean equal parts.
 double ImplicitCells::root_mean_square(const Surface& surface) {
   const auto [known, is_new] = root_mean_squares_.try_emplace(std::string(surface.name), 0);
   if (!is_new) return known->second;
   CellPoint point;
   for (std::size_t i = 0; i < 3; ++i) point.local[i] = Term::coordinate(i);
-  const FlatTerm flat(surface_at(surface, {{}, {1, 1, 1}}, point));
-  constexpr int along = 32;
-  double sum = 0;
-  for (int i = 0; i < along; ++i)
-    for (int j = 0; j < along; ++j)
-      for (int k = 0; k < along; ++k) {
-        const double f = flat.value({(i + 0.25) / along, (j + 0.25) / along, (k + 0.25) / along});
-        sum += f * f;
-      }
-  return known->second = std::sqrt(sum / (along * along * along));
+  const eval::BoxShape unit{{}, {1, 1, 1}};
+  return known->second = implicit::root_mean_square(surface_at(surface, unit, point), {unit.corner, unit.size});
 }
 
 /// The second half of the box shows the first in a mirror, along the axes that the document names; so does every copy.

@@ -24,21 +24,22 @@ std::vector<double> values_at(const Term& term, std::span<const Vec3> points) {
   return values;
 }
 
-std::string share_text(double share) { return format_number(std::round(share * 1e4) / 1e4); }
+std::string share_text(double share) { return format_number(std::round(share * 1e4) / 1e4 + 0.0); }  // no -0
 
 /// What is left between the gaps, in words.
-std::pair<std::string, std::string> reachable(std::span<const DensityTable::Gap> gaps) {
-  std::string low = "more than 0", high = "less than 1";
-  for (std::size_t g = gaps.size(); g-- > 0;) {
-    const auto [from, to] = gaps[g];
-    if (from <= meant)
-      low = share_text(to);
-    else if (to >= 1 - meant)
-      high = share_text(from);
-    else
-      high = share_text(from) + ", or " + share_text(to) + " to " + high;
+std::string reachable(std::span<const DensityTable::Gap> gaps) {
+  std::string text, from = "0", to = "1";
+  for (const DensityTable::Gap& gap : gaps) {
+    if (gap.from <= meant) {
+      from = share_text(gap.to);
+    } else if (gap.to >= 1 - meant) {
+      to = share_text(gap.from);
+    } else {
+      text += from + " and " + share_text(gap.from) + ", or ";
+      from = share_text(gap.to);
+    }
   }
-  return {low, high};
+  return text + from + " and " + to;
 }
 
 }  // namespace
@@ -76,7 +77,7 @@ bool ImplicitCells::check_weights(const Parts& made, std::span<const Vec3> point
     for (std::size_t n = 0; n < points.size(); ++n) {
       if (weights[n] >= -slack && weights[n] <= 1 + slack) continue;
       report_(Code::blend_weight, body_.blends[b].id_in_source,
-              {cells_.unit_cell().id.text, format_number(weights[n]), place_text(points[n] / unit_mm_)});
+              {cells_.unit_cell().id.text, share_text(weights[n]), place_text(points[n] / unit_mm_)}, "weight");
       return false;
     }
   }
@@ -123,9 +124,9 @@ bool ImplicitCells::check_shares(const Term& share, const DensityTable& table, c
           return shares[n] > gap.from + meant && shares[n] < gap.to - meant;
         }))
       continue;
-    const auto [low, high] = reachable(gaps);
     report_(Code::density_unreachable, body_.id_in_source,
-            {cells_.unit_cell().id.text, format_number(shares[n]), place_text(points[n] / unit_mm_), low, high});
+            {cells_.unit_cell().id.text, share_text(shares[n]), place_text(points[n] / unit_mm_), reachable(gaps)},
+            "density");
     return false;
   }
   return true;

@@ -24,10 +24,11 @@ Field joined(const Field& a, const Field& b) { return union_of(a.offset(seam), b
 
 Field nothing() { return Field::from_term(Term::constant(1e30)); }
 
-void Reporter::operator()(Code code, ElementId where, std::vector<std::string> args) const {
+void Reporter::operator()(Code code, ElementId where, std::vector<std::string> args, std::string_view attribute) const {
+  const SourceMap& source = evaluation_.checked().source();
   sink_.report({.code = code,
-                .where = evaluation_.checked().source().span(where),
-                .path = evaluation_.checked().source().path(where),
+                .where = attribute.empty() ? source.span(where) : source.span(where, attribute),
+                .path = source.path(where, attribute),
                 .args = std::move(args)});
 }
 

@@ -20,7 +20,7 @@ namespace meso::implicit {
 class Reporter {
  public:
   Reporter(const eval::Evaluation& evaluation, DiagnosticSink& sink) : evaluation_(evaluation), sink_(sink) {}
-  void operator()(Code code, ElementId where, std::vector<std::string> args) const;
+  void operator()(Code code, ElementId where, std::vector<std::string> args, std::string_view attribute = {}) const;
   [[nodiscard]] DiagnosticSink& sink() const { return sink_; }
 
  private:

@@ -89,6 +89,21 @@ Term density_level(std::shared_ptr<const DensityTable> table, const Term& share,
   return Term::external(std::make_shared<const DensityLevel>(std::move(table), share, at));
 }
 
+// The mean over a regular grid.
+double root_mean_square(const Term& function, const DensityTable::Room& box) {
+  constexpr int along = 32;
+  const auto at = [&](int i, std::size_t axis) { return box.corner[axis] + (i + 0.25) / along * box.size[axis]; };
+  std::vector<Vec3> points;
+  for (int i = 0; i < along; ++i)
+    for (int j = 0; j < along; ++j)
+      for (int k = 0; k < along; ++k) points.push_back({at(i, 0), at(j, 1), at(k, 2)});
+  std::vector<double> values(points.size());
+  FlatTerm(function).values(points, values);
+  double sum = 0;
+  for (const double f : values) sum += f * f;
+  return std::sqrt(sum / static_cast<double>(values.size()));
+}
+
 // The additive sequence of the plastic number's generalisation to three dimensions (Roberts 2018).
 std::vector<Vec3> even_points(std::size_t count) {
   constexpr double g = 1.2207440846057594753616853491088319;

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "meso/implicit/point_function.hpp"
 
+#include <array>
+#include <cmath>
+
 namespace meso::implicit {
 namespace {
 
@@ -46,7 +49,40 @@ class Prepared final : public ExternalField::Prepared {
   double band_;
 };
 
+/// Leaves that are asked are not taken along by Term::with.
+class TakenFrom final : public PointFunction {
+ public:
+  TakenFrom(const Term& f, const std::array<Term, 3>& xyz)
+      : f_(f), xyz_{FlatTerm(xyz[0]), FlatTerm(xyz[1]), FlatTerm(xyz[2])} {}
+
+  void values(std::span<const Vec3> points, double* out) const override {
+    std::vector<Vec3> sources(points.size());
+    for (std::size_t a = 0; a < 3; ++a) {
+      xyz_[a].values(points, {out, points.size()});
+      for (std::size_t n = 0; n < points.size(); ++n) sources[n][a] = out[n];
+    }
+    f_.values(sources, {out, points.size()});
+  }
+  [[nodiscard]] Interval interval(const Box3& box) const override {
+    Box3 from;
+    for (std::size_t a = 0; a < 3; ++a) {
+      const Interval range = xyz_[a].interval(box);
+      if (range.undefined || !std::isfinite(range.lo) || !std::isfinite(range.hi)) return Interval::everything();
+      from.min[a] = range.lo, from.max[a] = range.hi;
+    }
+    return f_.interval(from);
+  }
+
+ private:
+  FlatTerm f_;
+  std::array<FlatTerm, 3> xyz_;
+};
+
 }  // namespace
+
+Term taken_from(const Term& f, const std::array<Term, 3>& xyz) {
+  return f.has_external() ? Term::external(std::make_shared<const TakenFrom>(f, xyz)) : f.with(xyz);
+}
 
 double PointFunction::value(Vec3 p) const {
   double result = 0;

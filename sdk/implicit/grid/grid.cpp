@@ -41,15 +41,22 @@ Vec3 within(unsigned planes, Vec3 v) {
   return v;
 }
 
-bool fits_memory(const Grid& grid, std::uint64_t bytes, std::string_view purpose, const RunOptions& run,
+std::string mebibytes(std::uint64_t bytes) { return std::to_string((bytes >> 20) + (bytes % (1 << 20) != 0 ? 1 : 0)); }
+
+bool fits_memory(std::string nodes, std::uint64_t bytes, std::string_view purpose, const RunOptions& run,
                  DiagnosticSink& diagnostics) {
   if (bytes <= run.max_memory_bytes) return true;
-  const auto mebibytes = [](std::uint64_t n) { return std::to_string((n >> 20) + (n % (1 << 20) != 0 ? 1 : 0)); };
+  diagnostics.report(
+      {.code = Code::limit_grid_memory,
+       .args = {std::move(nodes), mebibytes(bytes), std::string(purpose), mebibytes(run.max_memory_bytes)}});
+  return false;
+}
+
+bool fits_memory(const Grid& grid, std::uint64_t bytes, std::string_view purpose, const RunOptions& run,
+                 DiagnosticSink& diagnostics) {
   std::string nodes;  // not their product, which may leave 64 bits
   for (const std::int32_t n : grid.nodes) nodes += (nodes.empty() ? "" : " x ") + std::to_string(n);
-  diagnostics.report({.code = Code::limit_grid_memory,
-                      .args = {nodes, mebibytes(bytes), std::string(purpose), mebibytes(run.max_memory_bytes)}});
-  return false;
+  return fits_memory(std::move(nodes), bytes, purpose, run, diagnostics);
 }
 
 double float_step(const Box3& box) {

@@ -15,13 +15,12 @@ using stuffing::Points;
 
 bool fits(const BccLattice& lattice, std::uint64_t bytes, const char* purpose, const RunOptions& run,
           DiagnosticSink& sink) {
-  // Points and cuts are numbered in 32 bits.
-  constexpr std::uint64_t most_points = std::uint64_t{1} << 31;
-  if (bytes <= run.max_memory_bytes && stuffing::point_count(lattice) < most_points) return true;
-  const auto mebibytes = [](std::uint64_t n) { return std::to_string((n + (std::uint64_t{1} << 20) - 1) >> 20); };
-  sink.report({.code = Code::limit_grid_memory,
-               .args = {std::to_string(stuffing::point_count(lattice)), mebibytes(bytes), purpose,
-                        mebibytes(run.max_memory_bytes)}});
+  const std::uint64_t points = stuffing::point_count(lattice);
+  if (!fits_memory(std::to_string(points), bytes, purpose, run, sink)) return false;
+  constexpr std::uint64_t most_points = (std::uint64_t{1} << 31) - 1;  // they and cuts are numbered in 32 bits
+  if (points <= most_points) return true;
+  sink.report(
+      {.code = Code::limit_grid, .args = {std::to_string(points), "its axes together", std::to_string(most_points)}});
   return false;
 }
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 // Makes a document of a tree of solids, operand by operand: what stands in the document already is not made again.
-// Bodies of primitives and files: make_bodies.cpp; unit cells and their levels: make_cells.cpp; what is bent:
-// make_bends.cpp; the rest: make_document.cpp.
+// Bodies of primitives and files: make_bodies.cpp; unit cells and their levels: make_cells.cpp; blends of shares:
+// make_blends.cpp; what is bent: make_bends.cpp; the rest: make_document.cpp.
 
 #include <algorithm>
 #include <array>
@@ -78,6 +78,18 @@ class DocumentMaker {
   bool set_levels(const Chain& chain, UnitCell& cell, ImplicitBody& body, Pattern& pattern, bool is_periodic);
   std::optional<std::string> field_text(Index node, UnitCell& cell);
   bool add_blends(Index node, UnitCell& cell, ImplicitBody& body);
+
+  /// A surface, perhaps scaled, and its share; and of blends of these, in order.
+  struct Share {
+    const Instruction* surface = nullptr;
+    double scale = 1;
+    Index density = 0, blend = 0;  ///< that which joins it to those before
+  };
+  bool fills_a_share(Index node) const;
+  bool add_shares(Index node, std::vector<Share>& shares);
+  std::optional<Operand> blended_cells(Index node, const Box3& region);
+  /// A parameter of the cell, whose value is a formula of the point.
+  static Expression set_at_points(UnitCell& cell, Pattern& pattern, const std::string& id, const std::string& text);
 
   std::optional<std::string> part_of(const Operand& operand, const std::string& name);
   std::optional<CsgNode> csg(Index node);

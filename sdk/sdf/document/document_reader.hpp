@@ -17,9 +17,12 @@ namespace meso::sdf {
 /// Puts the words of what it reads behind those that are there; false after a fault.
 class DocumentReader {
  public:
-  DocumentReader(const eval::Evaluation& evaluation, WhyNot& why) : evaluation_(evaluation), why_(why) {}
+  /// Whether to go on behind what is no word, for the sake of all others.
+  enum class Faults { first, all };
+  DocumentReader(const eval::Evaluation& evaluation, Faults faults) : evaluation_(evaluation), wanted_(faults) {}
 
   std::optional<Program> read(const std::string& part);
+  [[nodiscard]] const std::vector<WhyNot>& faults() const { return faults_; }
 
  private:
   bool part(const Part& part, const Box3& region);
@@ -39,6 +42,7 @@ class DocumentReader {
   bool struts(const UnitCell& cell, const Pattern& pattern, const Box3& region);
   bool surface(const UnitCell& cell, const ImplicitBody& body, const Pattern& pattern, const Box3& region);
   bool formula(const UnitCell& cell, const ImplicitBody& body, const Pattern& pattern, const Box3& region);
+  bool blended_surfaces(const UnitCell& cell, const ImplicitBody& body, const Pattern& pattern, const Box3& region);
   bool leaf(const UnitCell& cell, const std::string& field);
   /// `divisor`: the text that levels of a scaled surface are divided by.
   bool levels(const UnitCell& cell, const ImplicitBody& body, const Pattern& pattern, const std::string& divisor);
@@ -49,9 +53,13 @@ class DocumentReader {
     words_.push_back(std::move(made));
   }
   bool no(std::string why) {
-    if (why_.why.empty()) why_ = {where_, std::move(why)};
+    const auto is_same = [&](const WhyNot& known) { return known.element == where_ && known.why == why; };
+    if (faults_.empty() || (wanted_ == Faults::all && std::ranges::none_of(faults_, is_same)))
+      faults_.push_back({where_, std::move(why)});
     return false;
   }
+  /// After a fault: whether to look at what stands beside it.
+  [[nodiscard]] bool looks_on() const { return wanted_ == Faults::all; }
   double value(const Expression& expression) {
     DiagnosticSink unheard;
     const auto v = evaluation_.value(expression, {}, "value", unheard);
@@ -62,9 +70,10 @@ class DocumentReader {
     return expression ? value(*expression) : absent;
   }
   std::optional<Box3> box_of(const CellBox& box) {
+    const std::size_t before = faults_.size();
     const Vec3 corner{value(box.x, 0), value(box.y, 0), value(box.z, 0)};
     const Vec3 size{value(box.dx), value(box.dy), value(box.dz)};
-    return why_.why.empty() ? std::optional(Box3{corner, corner + size}) : std::nullopt;
+    return faults_.size() == before ? std::optional(Box3{corner, corner + size}) : std::nullopt;
   }
   static bool stands_once(const Pattern& pattern) {
     return pattern.list && pattern.list->places.size() == 1 && pattern.list->places[0].at.text == "0, 0, 0";
@@ -84,10 +93,18 @@ class DocumentReader {
   };
   std::optional<Level> level(const UnitCell& cell, const Pattern& pattern, const Expression& expression,
                              const std::string& divisor);
-  std::optional<std::string> in_words(const UnitCell& cell, const std::string& text, std::string_view axis_prefix);
+  bool blend_by(const Level& weight);
+  std::optional<std::string> in_words(const UnitCell& cell, const Pattern& pattern, const std::string& text,
+                                      std::string_view axis_prefix);
+  /// Values at points are all that happens to the cells.
+  bool only_sets_at_points(const Pattern& pattern);
+  /// What a surface's coordinates are multiplied by in a cell.
+  std::optional<Vec3> scale_of(const UnitCell& cell, const Pattern& pattern, const Box3& region,
+                               std::string_view surface);
 
   const eval::Evaluation& evaluation_;
-  WhyNot& why_;
+  Faults wanted_;
+  std::vector<WhyNot> faults_;
   std::string where_;
   std::vector<Instruction> words_;
 };

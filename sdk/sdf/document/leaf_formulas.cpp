@@ -31,6 +31,12 @@ std::span<const LeafFormula> leaf_formulas() {
   return all;
 }
 
+std::string in_document(std::string_view formula) {
+  return renamed(formula, [](const std::string& used) {
+    return used == "tau" ? std::optional<std::string>("(2*pi)") : std::nullopt;
+  });
+}
+
 std::string scaled_field(std::string_view field) {
   return std::string(scaled_begin) +
          renamed(field,
@@ -62,6 +68,26 @@ std::string unclamped(std::string_view weight) {
   const std::string inner(weight.substr(clamped_begin.size(), weight.size() - around));
   // clamp(a, 0, 1) + clamp(b, 0, 1) begins and ends so, too.
   return expr::parse_expression(inner, LengthUnit::millimeter).expression ? inner : std::string(weight);
+}
+
+std::string blended_share(std::string_view one, std::string_view other, std::string_view weight) {
+  const std::string w(weight);
+  return "(1 - " + w + ")*(" + std::string(one) + ") + " + w + "*(" + std::string(other) + ")";
+}
+
+std::optional<std::pair<std::string, std::string>> shares_of(std::string_view blended, std::string_view weight) {
+  const std::string w(weight), begin = "(1 - " + w + ")*(", between = ") + " + w + "*(";
+  const std::size_t middle = blended.rfind(between);
+  if (!blended.starts_with(begin) || !blended.ends_with(')') || middle == std::string_view::npos ||
+      middle < begin.size())
+    return std::nullopt;
+  const std::size_t other = middle + between.size();
+  const std::pair found{std::string(blended.substr(begin.size(), middle - begin.size())),
+                        std::string(blended.substr(other, blended.size() - other - 1))};
+  const auto stands_alone = [](const std::string& text) {
+    return expr::parse_expression(text, LengthUnit::millimeter).expression.has_value();
+  };
+  return stands_alone(found.first) && stands_alone(found.second) ? std::optional(found) : std::nullopt;
 }
 
 // I - 2 n n' / (n . n)

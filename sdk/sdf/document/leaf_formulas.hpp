@@ -6,6 +6,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "meso/sdf/vocabulary.hpp"
@@ -42,6 +43,9 @@ template <class Meaning>
   return result;
 }
 
+/// A formula of words as one of documents, which do not know tau.
+[[nodiscard]] std::string in_document(std::string_view formula);
+
 /// F(x, y, z) as scale*(F(x/scale, y/scale, z/scale)), and back.
 [[nodiscard]] std::string scaled_field(std::string_view field);
 [[nodiscard]] std::optional<std::string> unscaled_field(std::string_view field);
@@ -49,6 +53,11 @@ template <class Meaning>
 /// Weights of blends count at most 1 and at least 0 in words; documents demand it.
 [[nodiscard]] std::string clamped(std::string_view weight);
 [[nodiscard]] std::string unclamped(std::string_view weight);
+
+/// Of what is blended, the share alike: (1 - weight)*one + weight*other. And back: nothing if it is not written so.
+[[nodiscard]] std::string blended_share(std::string_view one, std::string_view other, std::string_view weight);
+[[nodiscard]] std::optional<std::pair<std::string, std::string>> shares_of(std::string_view blended,
+                                                                           std::string_view weight);
 
 /// The matrix of a mirror or of a scale with negative factors, of parameters whose names begin so, and back.
 [[nodiscard]] std::string mirror_matrix(const std::string& prefix);

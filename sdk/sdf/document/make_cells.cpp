@@ -46,6 +46,18 @@ std::optional<DocumentMaker::Chain> DocumentMaker::chain_of(Index node) {
   }
 }
 
+// A cell's own x, y, z begin in each cell anew.
+Expression DocumentMaker::set_at_points(UnitCell& cell, Pattern& pattern, const std::string& id,
+                                        const std::string& text) {
+  cell.parameters.push_back({.name = {id}, .value = {"0"}});
+  const std::string value = renamed(text, [](const std::string& used) {
+    const bool is_axis = used == "x" || used == "y" || used == "z";
+    return is_axis ? std::optional("global." + used) : std::nullopt;
+  });
+  pattern.instructions.push_back(SetInstruction{.parameter = {id}, .value = {value}, .at = SetAt::point});
+  return {id};
+}
+
 bool DocumentMaker::set_levels(const Chain& chain, UnitCell& cell, ImplicitBody& body, Pattern& pattern,
                                bool is_periodic) {
   std::string factor;  // of levels that are taken of a scaled surface
@@ -54,20 +66,8 @@ bool DocumentMaker::set_levels(const Chain& chain, UnitCell& cell, ImplicitBody&
                          const std::string& divided) -> Expression {
     const std::string id = name(node) + suffix;
     if (text.empty()) return {number(id, constant).text + divided};
-    const std::string written = renamed(text, [](const std::string& used) {
-      return used == "tau" ? std::optional<std::string>("(2*pi)") : std::nullopt;
-    });
-    if (!is_periodic) return {written};
-    cell.parameters.push_back({.name = {id}, .value = {"0"}});
-    pattern.instructions.push_back(
-        SetInstruction{.parameter = {id},
-                       .value = {renamed(written,
-                                         [](const std::string& used) {
-                                           const bool is_axis = used == "x" || used == "y" || used == "z";
-                                           return is_axis ? std::optional("global." + used) : std::nullopt;
-                                         })},
-                       .at = SetAt::point});
-    return {id + divided};
+    if (!is_periodic) return {in_document(text)};
+    return {set_at_points(cell, pattern, id, in_document(text)).text + divided};
   };
   for (std::size_t i = 0; i < chain.levels.size(); ++i) {
     const Instruction& at = *chain.levels[i];
@@ -101,10 +101,7 @@ std::optional<std::string> DocumentMaker::field_text(Index node, UnitCell& cell)
   const Instruction& at = word(node);
   const auto& n = at.numbers;
   if (at.verb == Verb::surface) return std::string(implicit::find_surface(at.text)->expression);
-  if (at.verb == Verb::expression)
-    return renamed(at.text, [](const std::string& used) {
-      return used == "tau" ? std::optional<std::string>("(2*pi)") : std::nullopt;
-    });
+  if (at.verb == Verb::expression) return in_document(at.text);
   const auto formulas = leaf_formulas();
   const auto found = std::ranges::find(formulas, at.verb, &LeafFormula::verb);
   if (found == formulas.end()) return fault(at, "a document has no formula of its distance, which a level needs");
@@ -140,10 +137,7 @@ bool DocumentMaker::add_blends(Index node, UnitCell& cell, ImplicitBody& body) {
   if (!add_blends(below(node), cell, body)) return false;
   const auto field = field_text(above, cell);
   if (!field) return false;
-  const std::string weight = renamed(at.text, [](const std::string& used) {
-    return used == "tau" ? std::optional<std::string>("(2*pi)") : std::nullopt;
-  });
-  body.blends.push_back({.field = Expression{*field}, .weight = {clamped(weight)}});
+  body.blends.push_back({.field = Expression{*field}, .weight = {clamped(in_document(at.text))}});
   return true;
 }
 
@@ -155,6 +149,10 @@ std::optional<Operand> DocumentMaker::cell(Index node, const Box3& region) {
   UnitCell made{.id = {id}};
   ImplicitBody body;
   Pattern pattern;
+  if (fills_a_share(chain->leaf)) {
+    if (node != chain->leaf) return fault(node, "a blend of densities has no level on top; state another density");
+    return blended_cells(node, region);
+  }
   const bool is_periodic = leaf.verb == Verb::surface;
   if (leaf.verb == Verb::file || leaf.verb == Verb::strut)
     return fault(node, "in a document only surfaces, formulas and primitives have levels");

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <map>
 #include <numbers>
 
@@ -31,8 +32,8 @@ bool DocumentReader::struts(const UnitCell& cell, const Pattern& pattern, const 
   return true;
 }
 
-std::optional<std::string> DocumentReader::in_words(const UnitCell& cell, const std::string& text,
-                                                    std::string_view axis_prefix) {
+std::optional<std::string> DocumentReader::in_words(const UnitCell& cell, const Pattern& pattern,
+                                                    const std::string& text, std::string_view axis_prefix) {
   bool known = true;
   const auto parsed = expr::parse_expression(text, LengthUnit::millimeter);
   if (!parsed.expression) return std::nullopt;
@@ -45,6 +46,10 @@ std::optional<std::string> DocumentReader::in_words(const UnitCell& cell, const 
       continue;
     }
     const auto own = std::ranges::find(cell.parameters, name.text, [](const CellParameter& p) { return p.name.text; });
+    known = known && std::ranges::none_of(pattern.instructions, [&](const meso::Instruction& instruction) {
+              const auto* set = std::get_if<SetInstruction>(&instruction);
+              return set != nullptr && set->parameter.text == name.text;
+            });
     DiagnosticSink unheard;
     const auto number = own != cell.parameters.end() ? evaluation_.value(own->value, {}, "value", unheard)
                                                      : evaluation_.value(Expression{name.text}, {}, "value", unheard);
@@ -70,7 +75,7 @@ std::optional<DocumentReader::Level> DocumentReader::level(const UnitCell& cell,
       prefix = "global.";
       break;
     }
-  const auto words = in_words(cell, text, prefix);
+  const auto words = in_words(cell, pattern, text, prefix);
   if (!words) return no("'" + text + "' has names that words do not know"), std::nullopt;
   const auto parsed = expr::parse_expression(*words, LengthUnit::millimeter);
   if (!parsed.expression->is_constant()) return Level{.formula = *words};
@@ -110,19 +115,36 @@ bool DocumentReader::levels(const UnitCell& cell, const ImplicitBody& body, cons
   return true;
 }
 
+bool DocumentReader::only_sets_at_points(const Pattern& pattern) {
+  for (const meso::Instruction& instruction : pattern.instructions) {
+    const auto* set = std::get_if<SetInstruction>(&instruction);
+    if (set == nullptr || set->at != SetAt::point) return no("an instruction that no word says");
+  }
+  return true;
+}
+
+std::optional<Vec3> DocumentReader::scale_of(const UnitCell& cell, const Pattern& pattern, const Box3& region,
+                                             std::string_view surface) {
+  const auto box = box_of(*cell.box);
+  if (!box) return std::nullopt;
+  Vec3 factor{value(cell.box->dx), value(cell.box->dy), value(cell.box->dz)};
+  if (!(box->min == Vec3{})) return no("a cell whose corner is not the origin"), std::nullopt;
+  if (!fills(pattern, region, factor)) return std::nullopt;
+  if (surface != "q-star-hex") return factor;
+  if (factor.y != std::numbers::sqrt3 * factor.x)
+    return no("a period that is stretched; words scale the surface's own"), std::nullopt;
+  factor.y = factor.x;
+  return factor;
+}
+
 bool DocumentReader::surface(const UnitCell& cell, const ImplicitBody& body, const Pattern& pattern,
                              const Box3& region) {
   const implicit::Surface* known = implicit::find_surface(*body.surface);
   if (known == nullptr) return no("an unknown surface");
-  const auto box = box_of(*cell.box);
-  if (!box) return false;
-  const Vec3 size{value(cell.box->dx), value(cell.box->dy), value(cell.box->dz)};
-  if (!(box->min == Vec3{})) return no("a cell whose corner is not the origin");
-  if (!fills(pattern, region, size)) return false;
-  Vec3 factor = size;
-  if (known->name == "q-star-hex") factor.y = value(Expression{cell.box->dx.text});
-  if (known->name == "q-star-hex" && size.y != std::numbers::sqrt3 * factor.y)
-    return no("a period that is stretched; words scale the surface's own");
+  if (!only_sets_at_points(pattern)) return false;
+  const auto scale = scale_of(cell, pattern, region, known->name);
+  if (!scale) return false;
+  const Vec3 factor = *scale;
   push(Verb::surface, {}, std::string(known->name));
   const bool is_scaled = !(factor == Vec3{1, 1, 1});
   // Levels of the scaled surface are written as lengths over its edge.
@@ -152,9 +174,18 @@ bool DocumentReader::leaf(const UnitCell& cell, const std::string& field) {
     words_.push_back(std::move(made));
     return true;
   }
-  const auto words = in_words(cell, field, "");
+  const auto words = in_words(cell, Pattern{}, field, "");
   if (!words) return no("'" + field + "' has names that words do not know");
   push(Verb::expression, {}, *words);
+  return true;
+}
+
+// In a document it is an error where a weight leaves 0 to 1; in words it counts as its end there.
+bool DocumentReader::blend_by(const Level& weight) {
+  const std::string formula = weight.formula.empty() ? format_number(weight.number) : unclamped(weight.formula);
+  const bool stays = weight.formula.empty() ? weight.number >= 0 && weight.number <= 1 : formula != weight.formula;
+  if (!stays) return no("a weight that is not clamped from 0 to 1");
+  push(Verb::blend, {}, formula);
   return true;
 }
 
@@ -164,16 +195,14 @@ bool DocumentReader::formula(const UnitCell& cell, const ImplicitBody& body, con
   const auto box = box_of(*cell.box);
   if (!box) return false;
   if (!holds(*box, region)) return no("a cell that does not hold the bounds; words cut nothing");
-  if (!body.field) return no("a blend of surfaces by name, which weighs them by their size");
   if (body.density) return no("the density of a formula");
   const auto unscaled = unscaled_field(body.field->text);
   if (!leaf(cell, unscaled ? *unscaled : body.field->text)) return false;
   for (const ImplicitBlend& blend : body.blends) {
     if (!blend.field) return no("a blend of surfaces by name, which weighs them by their size");
-    const auto weight = in_words(cell, unclamped(blend.weight.text), "");
-    if (!weight) return no("a weight with names that words do not know");
-    if (!leaf(cell, blend.field->text)) return false;
-    push(Verb::blend, {}, *weight);
+    const auto weight = level(cell, pattern, blend.weight, "");
+    if (!weight || !leaf(cell, blend.field->text)) return false;
+    if (!blend_by(*weight)) return false;
   }
   if (unscaled) {
     const auto own = std::ranges::find(cell.parameters, "scale",
@@ -183,6 +212,38 @@ bool DocumentReader::formula(const UnitCell& cell, const ImplicitBody& body, con
     push(Verb::scale, {k, k, k});
   }
   return levels(cell, body, pattern, "");
+}
+
+// The last blend is the outermost of shares that are blended alike.
+bool DocumentReader::blended_surfaces(const UnitCell& cell, const ImplicitBody& body, const Pattern& pattern,
+                                      const Box3& region) {
+  if (!body.density || body.kind || body.isovalue)
+    return no("a blend of surfaces by name without a density, which weighs them by their size");
+  if (!only_sets_at_points(pattern)) return false;
+  std::vector<std::string> shares(body.blends.size() + 1, body.density->text);
+  for (std::size_t i = body.blends.size(); i > 0; --i) {
+    const auto both = shares_of(shares[0], body.blends[i - 1].weight.text);
+    if (!both) break;
+    shares[0] = both->first, shares[i] = both->second;
+    std::fill(shares.begin() + 1, shares.begin() + static_cast<std::ptrdiff_t>(i), shares[0]);
+  }
+  const auto add = [&](const std::optional<std::string>& name, const std::string& share) {
+    const implicit::Surface* known = name ? implicit::find_surface(*name) : nullptr;
+    if (known == nullptr) return no("a blend of surfaces and formulas");
+    const auto scale = scale_of(cell, pattern, region, known->name);
+    const auto read = scale ? level(cell, pattern, Expression{share}, "") : std::nullopt;
+    if (!read) return false;
+    push(Verb::surface, {}, std::string(known->name));
+    if (!(*scale == Vec3{1, 1, 1})) push(Verb::scale, {scale->x, scale->y, scale->z});
+    push(Verb::density, {read->number}, read->formula);
+    return true;
+  };
+  if (!add(body.surface, shares[0])) return false;
+  for (std::size_t i = 0; i < body.blends.size(); ++i) {
+    const auto weight = level(cell, pattern, body.blends[i].weight, "");
+    if (!weight || !add(body.blends[i].surface, shares[i + 1]) || !blend_by(*weight)) return false;
+  }
+  return true;
 }
 
 }  // namespace meso::sdf

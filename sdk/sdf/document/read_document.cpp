@@ -9,28 +9,29 @@ namespace meso::sdf {
 std::optional<Program> DocumentReader::read(const std::string& id) {
   const Document& document = evaluation_.document();
   where_ = "the document";
-  const auto refuse = [&](std::string why) { return no(std::move(why)), std::nullopt; };
-  if (document.unit != LengthUnit::millimeter) return refuse("its unit is not the millimetre");
+  if (document.unit != LengthUnit::millimeter && !no("its unit is not the millimetre") && !looks_on())
+    return std::nullopt;
   const BuildItem* built = nullptr;
   for (const BuildItem& item : document.build) {
     if (!id.empty() && item.part.text != id) continue;
-    if (built != nullptr) return refuse("it builds several parts");
+    if (built != nullptr) return no("it builds several parts"), std::nullopt;
     built = &item;
   }
-  if (built == nullptr) return refuse("it has no build that says where samples are taken");
+  if (built == nullptr) return no("it has no build that says where samples are taken"), std::nullopt;
   where_ = "part '" + built->part.text + "'";
-  if (built->placement) return refuse("its item of the build has a placement");
+  if (built->placement) no("its item of the build has a placement");
   const auto& mesh = built->mesh;
   if (!mesh || !mesh->samples || !mesh->x || !mesh->y || !mesh->z || !mesh->dx || !mesh->dy || !mesh->dz)
-    return refuse("its <mesh> does not state samples and all bounds");
+    return no("its <mesh> does not state samples and all bounds"), std::nullopt;
+  if (!faults_.empty() && !looks_on()) return std::nullopt;
   Program program;
   program.samples.clear();
   for (const auto& item : expr::split_list(mesh->samples->text))
     program.samples.push_back(value(Expression{std::string(item.text)}));
   const Vec3 corner{value(*mesh->x), value(*mesh->y), value(*mesh->z)};
   program.box = Box3{corner, corner + Vec3{value(*mesh->dx), value(*mesh->dy), value(*mesh->dz)}};
-  if (!why_.why.empty() || !part(*evaluation_.find_part(built->part.text), *program.box) || !why_.why.empty())
-    return std::nullopt;
+  if (!faults_.empty() && !looks_on()) return std::nullopt;
+  if (!part(*evaluation_.find_part(built->part.text), *program.box) || !faults_.empty()) return std::nullopt;
   program.instructions = std::move(words_);
   return program;
 }
@@ -54,17 +55,17 @@ bool DocumentReader::part(const Part& part, const Box3& region) {
         return true;
       }
     }
-    if (!macrostructure(part.macrostructure->text)) return false;
+    if (!macrostructure(part.macrostructure->text) && !looks_on()) return false;
   }
   bool is_first = !part.macrostructure;
   for (const Apply& apply : part.steps) {
-    if (!step(part, apply, region, is_first)) return false;
+    if (!step(part, apply, region, is_first) && !looks_on()) return false;
     if (!is_first) {
       const double radius = value(apply.radius, 0);
       if (apply.operation == ApplyOperation::union_ && radius > 0)
         push(Verb::smooth_union, {radius});
-      else if (radius > 0)
-        return no("a fillet where it is cut");
+      else if (radius > 0 && !no("a fillet where it is cut") && !looks_on())
+        return false;
       else
         push(apply.operation == ApplyOperation::union_         ? Verb::union_of
              : apply.operation == ApplyOperation::intersection ? Verb::intersection
@@ -72,16 +73,18 @@ bool DocumentReader::part(const Part& part, const Box3& region) {
     }
     is_first = false;
   }
-  return true;
+  return faults_.empty();
 }
 
 bool DocumentReader::step(const Part& part, const Apply& apply, const Box3& region, bool is_first) {
   where_ = "part '" + part.id.text + "'";
-  if (apply.boundary.value_or(BoundaryRule::clip) != BoundaryRule::clip) return no("a boundary rule");
-  if (apply.fragments.value_or(FragmentRule::keep) != FragmentRule::keep) return no("a rule for fragments");
-  if (apply.skin) return no("a skin");
+  bool ok = true;
+  if (apply.boundary.value_or(BoundaryRule::clip) != BoundaryRule::clip) ok = no("a boundary rule");
+  if (apply.fragments.value_or(FragmentRule::keep) != FragmentRule::keep) ok = no("a rule for fragments");
+  if (apply.skin) ok = no("a skin");
   // Without, what touches is joined by growing a little, which words do not.
-  if (!is_first && !apply.radius) return no("a step without radius=\"0\"");
+  if (!is_first && !apply.radius) ok = no("a step without radius=\"0\"");
+  if (!ok && !looks_on()) return false;
   if (apply.pattern) return pattern(*evaluation_.find_pattern(apply.pattern->text), region);
   return placed_part(apply, region);
 }
@@ -177,8 +180,16 @@ bool DocumentReader::csg(const CsgNode& node) {
 }
 
 std::optional<Program> program_of(const eval::Evaluation& evaluation, const std::string& part, WhyNot& why) {
-  why = {};
-  return DocumentReader(evaluation, why).read(part);
+  DocumentReader reader(evaluation, DocumentReader::Faults::first);
+  auto program = reader.read(part);
+  why = reader.faults().empty() ? WhyNot{} : reader.faults().front();
+  return program;
+}
+
+std::vector<WhyNot> all_that_is_no_word(const eval::Evaluation& evaluation, const std::string& part) {
+  DocumentReader reader(evaluation, DocumentReader::Faults::all);
+  (void)reader.read(part);
+  return reader.faults();
 }
 
 }  // namespace meso::sdf

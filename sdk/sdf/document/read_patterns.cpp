@@ -33,8 +33,8 @@ bool DocumentReader::pattern(const Pattern& pattern, const Box3& region) {
   const auto* body = std::get_if<ImplicitBody>(&cell.body);
   if (body == nullptr || !cell.box) return no("cells of a kind that no word makes");
   if (body->mirror || body->wall) return no("a mirror or a wall of a length");
-  return body->surface && body->blends.empty() ? surface(cell, *body, pattern, region)
-                                               : formula(cell, *body, pattern, region);
+  if (!body->surface) return formula(cell, *body, pattern, region);
+  return body->blends.empty() ? surface(cell, *body, pattern, region) : blended_surfaces(cell, *body, pattern, region);
 }
 
 // Each instruction works in the frame that the earlier ones left: the last one is the first word.
@@ -76,8 +76,9 @@ bool DocumentReader::bent_part(const UnitCell& cell, const Pattern& pattern, con
       !pattern.instructions.empty())
     return no("bent cells that are not one part, cut to its box");
   const auto& system = *find(evaluation_.document().coordinate_systems, pattern.coordinate_system->text);
+  const std::size_t before = faults_.size();
   const auto bend = read_bend(system, *cell.box, pattern, [&](const Expression& e) { return value(e); });
-  if (!why_.why.empty()) return false;
+  if (faults_.size() > before) return false;
   if (!bend) return no("a cell that is not bent once round the z axis, or once round from pole to pole");
   if (!shows_all(*bend, region)) return no("a bent cell that does not reach to the bounds; words cut nothing");
   const Part& solid = *evaluation_.find_part(body->part.text);

@@ -86,6 +86,8 @@ const char* const designs[] = {
     "tpms.gyroid scale 3 ball scale 4 intersection",
     "tpms.gyroid tpms.p blend '(x + 1)/2' shell 0.3",
     "tpms.gyroid tpms.p blend '(x + 1)/2' expression 'x*y' blend 0.1 scale 1.5",
+    "tpms.gyroid scale 2 density 0.2 tpms.p scale 2 density '0.3 + 0.1*y' blend '(x + tau/6.2)/2' move 0.1,0,0",
+    "tpms.d density 0.3 tpms.p density 0.3 blend 0.4 tpms.iwp density 0.5 blend 0.3 cylindrical 8 -b -2,-2,0,2,2,1",
     "ball shell 0.2",
     "ball move 1,0,0 shell 0.2",
     "ball scale 3 shell 0.3 box scale 2 intersection",
@@ -200,12 +202,16 @@ TEST(WordsAndDocuments, WhatADocumentCannotSayIsNamed) {
       {"strut.bcc 0.1 offset 0.1", "offset"},
       {"tpms.gyroid cylindrical 8 tpms.p blend x", "cylindrical"},
       {"ball scale 1,2,3 shell 0.1", "scale"},
+      {"tpms.gyroid scale 2 density 0.3 tpms.p density 0.3 blend x", "density"},
+      {"tpms.gyroid density 0.3 strut.bcc 0.1 density 0.3 blend x", "strut.bcc"},
+      {"tpms.gyroid density 0.3 tpms.p density 0.3 blend x offset 0.1", "offset"},
+      {"tpms.d density 0.3 tpms.gyroid density 0.3 tpms.p density 0.3 blend x blend y", "blend"},
+      {"tpms.gyroid density 0.3 tpms.p blend x", "density"},
   };
   for (const auto& [design, word] : cases) {
     const auto program = program_of_line(design);
-    const Solid solid = solid_of(*program);
     DiagnosticSink sink;
-    EXPECT_FALSE(document_of(*program, solid.box, "", sink)) << design;
+    EXPECT_FALSE(document_of(*program, {{-1, -1, -1}, {1, 1, 1}}, "", sink)) << design;
     ASSERT_EQ(sink.diagnostics().size(), 1u) << design;
     EXPECT_EQ(sink.diagnostics()[0].code, Code::sdf_not_a_document) << design;
     EXPECT_EQ(sink.diagnostics()[0].args[0], word) << design;
@@ -245,6 +251,61 @@ TEST(WordsAndDocuments, BendsThatNoWordSays) {
   EXPECT_EQ(printed("helix2Rise/helix2Turn", "helix2Rise/8"), "a placement that is not written as a mirror or a scale");
   EXPECT_EQ(printed("<mesh samples=\"1000000\" x=\"-1\"", "<mesh samples=\"1000000\" x=\"-2\""),
             "a bent cell that does not reach to the bounds; words cut nothing");
+}
+
+TEST(WordsAndDocuments, AllThatIsNoWordIsTold) {
+  const auto program = program_of_line("tpms.gyroid offset 0.1*x ball union box difference -b 0,0,0,4,2,2");
+  DiagnosticSink sink;
+  std::string text = write_document(*document_of(*program, *program->box, "", sink));
+  const auto change = [&](std::string_view was, std::string_view is) {
+    ASSERT_NE(text.find(was), std::string::npos) << was << " in " << text;
+    text.replace(text.find(was), was.size(), is);
+  };
+  change("</fill>", "</fill><translate x=\"0.5\"/>");
+  change("radius=\"0\"", "");
+  change("radius=\"0\"", "fragments=\"drop\"");
+  change("unit=\"millimeter\"", "unit=\"centimeter\"");
+  auto read = read_document(text, "part.meso", sink);
+  const auto checked = validate(std::move(read->document), std::move(read->source), ".", sink);
+  ASSERT_TRUE(checked) << render(sink.diagnostics().back());
+  const auto evaluation = eval::Evaluation::make(*checked, {}, sink);
+  std::set<std::string> told;
+  for (const WhyNot& why : all_that_is_no_word(*evaluation, "")) told.insert(why.why);
+  EXPECT_EQ(told, (std::set<std::string>{"its unit is not the millimetre", "an instruction that no word says",
+                                         "a step without radius=\"0\"", "a rule for fragments"}));
+  WhyNot first;
+  EXPECT_FALSE(program_of(*evaluation, "", first));
+  EXPECT_EQ(first.why, "its unit is not the millimetre");
+}
+
+// What words do not say must not be left out: cells that are moved, chosen or set one by one, weights that are errors.
+TEST(WordsAndDocuments, WhatCellsHaveBeyondWordsIsNoWord) {
+  const auto program = program_of_line("tpms.gyroid density 0.3 tpms.p density 0.3 blend x/4 -b 0,0,0,4,2,2");
+  DiagnosticSink sink;
+  const std::string blend = write_document(*document_of(*program, *program->box, "", sink));
+  const auto graded = program_of_line("tpms.gyroid offset 0.1*x -b 0,0,0,4,2,2");
+  const std::string level = write_document(*document_of(*graded, *graded->box, "", sink));
+  const auto why_not = [&](std::string text, std::string_view was, std::string_view is) {
+    const std::size_t at = text.find(was);
+    if (at == std::string::npos) return "no '" + std::string(was) + "' in " + text;
+    text.replace(at, was.size(), is);
+    auto read = read_document(text, "part.meso", sink);
+    const auto checked = validate(std::move(read->document), std::move(read->source), ".", sink);
+    if (!checked) return render(sink.diagnostics().back());
+    WhyNot why;
+    const auto again = program_of(*eval::Evaluation::make(*checked, {}, sink), "", why);
+    return again ? command_line(*again) : why.why;
+  };
+  const std::string instruction = "an instruction that no word says";
+  for (const std::string& text : {blend, level}) {
+    EXPECT_EQ(why_not(text, "</fill>", "</fill><translate x=\"0.5\"/>"), instruction);
+    EXPECT_EQ(why_not(text, "</fill>", "</fill><when test=\"global.x &lt; 2\"/>"), instruction);
+    EXPECT_EQ(why_not(text, " at=\"point\"", ""), instruction);
+  }
+  EXPECT_EQ(why_not(level, "isovalue=\"", "isovalue=\"2*"), "'2*offset2Level' has names that words do not know");
+  EXPECT_EQ(why_not(blend, "clamp(global.x/4, 0, 1)", "global.x/4"), "a weight that is not clamped from 0 to 1");
+  EXPECT_EQ(why_not(blend, " density=\"density2Share\"", " isovalue=\"0\""),
+            "a blend of surfaces by name without a density, which weighs them by their size");
 }
 
 }  // namespace

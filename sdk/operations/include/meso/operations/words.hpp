@@ -17,9 +17,12 @@
 
 namespace meso::operations {
 
+struct WrittenWords {
+  std::size_t parts = 0, unit_cells = 0, bytes = 0;
+};
 /// To the program's output.
-[[nodiscard]] bool write_words(const sdf::Program& program, ExistingFile existing, const RunOptions& run,
-                               DiagnosticSink& sink);
+[[nodiscard]] std::optional<WrittenWords> write_words(const sdf::Program& program, ExistingFile existing,
+                                                      const RunOptions& run, DiagnosticSink& sink);
 
 [[nodiscard]] std::optional<std::string> print_words(const std::string& document, const RunOptions& run,
                                                      DiagnosticSink& sink);

@@ -19,7 +19,8 @@
 //
 // The mesh is held in memory: some 160 bytes a triangle. Same bytes for any number of threads.
 // Errors: those of contour(), and LIMIT_TOLERANCE with what it would take; for a process that ends for want of memory
-// before this can be returned, foreseen_memory() has it. Warnings: TOLERANCE_NOT_REACHED, SIMPLIFY_FROM_COARSE.
+// before this can be returned, foreseen_memory() has it. Warnings: TOLERANCE_NOT_REACHED, SIMPLIFY_FROM_COARSE. For
+// information, before work of seconds or more: TOLERANCE_TAKES.
 
 #include <functional>
 

@@ -59,6 +59,9 @@ class DensityTable {
 /// table.level(share, at) at every point.
 [[nodiscard]] Term density_level(std::shared_ptr<const DensityTable> table, const Term& share, std::vector<Term> at);
 
+/// The root of the mean of a function's square over the box. For sums of sines, and their period, it is exact.
+[[nodiscard]] double root_mean_square(const Term& function, const DensityTable::Room& box);
+
 /// Points of the unit cube that fill it evenly, and lie on no plane of symmetry.
 [[nodiscard]] std::vector<Vec3> even_points(std::size_t count);
 

@@ -2,6 +2,7 @@
 #pragma once
 // A leaf of a term whose values are computed point by point: tables, fields of the document, distances to a level.
 
+#include <array>
 #include <memory>
 #include <span>
 #include <vector>
@@ -28,5 +29,8 @@ class PointFunction : public ExternalField, public std::enable_shared_from_this<
   [[nodiscard]] std::unique_ptr<Prepared> prepare(const Grid& grid, const Affine& field_from_grid, double band,
                                                   const RunOptions& run) const final;
 };
+
+/// p -> f(x(p), y(p), z(p)), also of functions with external leaves, which are asked point by point then.
+[[nodiscard]] Term taken_from(const Term& f, const std::array<Term, 3>& xyz);
 
 }  // namespace meso::implicit

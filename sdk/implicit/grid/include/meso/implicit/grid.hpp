@@ -47,6 +47,11 @@ struct Grid {
 /// for, where it is not.
 [[nodiscard]] bool fits_memory(const Grid& grid, std::uint64_t bytes, std::string_view purpose, const RunOptions& run,
                                DiagnosticSink& diagnostics);
+/// The same of nodes that stand otherwise; `nodes` is how many.
+[[nodiscard]] bool fits_memory(std::string nodes, std::uint64_t bytes, std::string_view purpose, const RunOptions& run,
+                               DiagnosticSink& diagnostics);
+/// Whole ones, for people.
+[[nodiscard]] std::string mebibytes(std::uint64_t bytes);
 
 /// The step of a box's largest coordinate, as a float.
 [[nodiscard]] double float_step(const Box3& box);

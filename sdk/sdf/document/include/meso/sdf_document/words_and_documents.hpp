@@ -14,6 +14,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "meso/eval/evaluation.hpp"
 #include "meso/model/document.hpp"
@@ -31,6 +32,9 @@ struct WhyNot {
 /// Of the part, or of the one that is built if `part` is empty. Paths of meshes as they are opened.
 [[nodiscard]] std::optional<Program> program_of(const eval::Evaluation& evaluation, const std::string& part,
                                                 WhyNot& why);
+
+/// All that stands in the way of program_of(), one for each step and cell. It looks at all of the document.
+[[nodiscard]] std::vector<WhyNot> all_that_is_no_word(const eval::Evaluation& evaluation, const std::string& part);
 
 /// Behind `meso sdf`: words a shell splits as they are, numbers in full.
 [[nodiscard]] std::string command_line(const Program& program);
