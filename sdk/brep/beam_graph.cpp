@@ -6,6 +6,7 @@
 
 #include "meso/base/number.hpp"
 #include "meso/brep/instance_map.hpp"
+#include "solid_beams.hpp"
 #include "solid_primitive.hpp"
 
 namespace meso::brep {
@@ -98,8 +99,8 @@ class Collector {
     why_ = std::move(why);
     return false;
   }
-  bool size(const char* what, double value, ElementId where) {
-    context_.report(Code::geometry_size, where, {what, format_number(value)});
+  bool size(std::string what, double value, ElementId where) {
+    context_.report(Code::geometry_size, where, {std::move(what), format_number(value)});
     return false;
   }
   void raise(std::uint32_t node, double radius) {
@@ -108,9 +109,11 @@ class Collector {
 
   bool add(const eval::Strut& strut, double scale, ElementId where) {
     BeamGraph::Strut added{{node_[strut.from], node_[strut.to]}, {scale * strut.radius_from, scale * strut.radius_to}};
-    if (added.node[0] == added.node[1]) return size("the length of a beam", 0, where);
+    const Vec3 from = graph_.nodes[added.node[0]].position;
+    if (added.node[0] == added.node[1]) return size(size_of_beam_at("length", from), 0, where);
     for (const double radius : added.radius)
-      if (!(radius > smallest_size && radius < largest_size)) return size("the radius of a beam", radius, where);
+      if (!(radius > smallest_size && radius < largest_size))
+        return size(size_of_beam_at("radius", from), radius, where);
     const std::array caps{strut.cap_from, strut.cap_to};
     for (std::size_t end = 0; end < 2; ++end) {
       // Half a ball at the end of a cone is less than a ball: it counts only where a ball covers it, see finish().

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <tuple>
 
-#include "meso/brep/placement.hpp"
 #include "unrolled_mesh.hpp"
 
 namespace meso::brep {
@@ -77,8 +76,6 @@ std::vector<Loop> chained(std::vector<Stretch> stretches) {
   }
   return loops;
 }
-
-Vec3 place_of(const MeshPoint& p, const Template& geometry) { return p.point + cell_origin(geometry, p.offset); }
 
 /// The border of a face as it is told to `unrolled_mesh`, and where its points are from.
 class FaceBorder {
@@ -190,6 +187,32 @@ class FaceBorder {
 
 bool bounds(const TopoDS_Edge& edge) {
   return edge.Orientation() == TopAbs_FORWARD || edge.Orientation() == TopAbs_REVERSED;
+}
+
+double negligible_fold(const TopoDS_Face& face, double deflection) {
+  double out = 1e-3 * deflection;
+  for (TopExp_Explorer it(face, TopAbs_EDGE); it.More(); it.Next())
+    out = std::fmax(out, 2 * BRep_Tool::Tolerance(TopoDS::Edge(it.Current())));
+  return out;
+}
+
+bool is_folded(const TopoDS_Face& face, const std::vector<Vec3>& places,
+               const std::vector<std::array<std::uint32_t, 3>>& triangles, double deflection) {
+  TopLoc_Location location;
+  const Handle(Poly_Triangulation) own = BRep_Tool::Triangulation(face, location);
+  const Handle(Geom_Surface) surface = BRep_Tool::Surface(face);
+  if (GeomAdaptor_Surface(surface).GetType() == GeomAbs_Plane || !own->HasUVNodes()) return false;
+  std::vector<BorderPoint> points;
+  for (int i = 1; i <= own->NbNodes(); ++i) {
+    const gp_Pnt2d at = own->UVNode(i);
+    points.push_back({places[static_cast<std::size_t>(i) - 1], {at.X(), at.Y()}});
+  }
+  std::vector<std::array<std::uint32_t, 3>> of_own;
+  for (auto t : triangles) {
+    if (face.Orientation() == TopAbs_REVERSED) std::swap(t[1], t[2]);
+    if (std::ranges::all_of(t, [&](std::uint32_t p) { return p < points.size(); })) of_own.push_back(t);
+  }
+  return fold_of(surface, points, of_own) > negligible_fold(face, deflection);
 }
 
 std::vector<double> parameters_on(const TopoDS_Edge& edge, const std::vector<Vec3>& inner) {

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "meso/brep/body.hpp"
+#include "meso/brep/placement.hpp"
 #include "occt.hpp"
 
 namespace meso::brep {
@@ -30,6 +31,20 @@ struct EdgePoints {
 
 /// Whether an edge of a face is part of its border; a line in which the face is touched is none.
 [[nodiscard]] bool bounds(const TopoDS_Edge& edge);
+
+/// Where a point of a mesh is in the template's coordinates.
+[[nodiscard]] inline Vec3 place_of(const MeshPoint& p, const Template& geometry) {
+  return p.point + cell_origin(geometry, p.offset);
+}
+
+/// In millimetres; less shows nowhere, and edges that are known to no more may cross.
+[[nodiscard]] double negligible_fold(const TopoDS_Face& face, double deflection);
+
+/// Whether the triangles that OpenCASCADE has made of a face are folded by more: as they are, not as the parameters are
+/// that they were made in. `places` of its points; of further ones, halves on the border, the folds are those of the
+/// whole. `triangles` look outward.
+[[nodiscard]] bool is_folded(const TopoDS_Face& face, const std::vector<Vec3>& places,
+                             const std::vector<std::array<std::uint32_t, 3>>& triangles, double deflection);
 
 /// The parameters along `edge` (forward) of points on it, in order and rising, between those of its ends. Where the
 /// edge is not quite the one that the points are from, and two feet on it are in the wrong order, by lengths.

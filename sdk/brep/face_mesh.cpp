@@ -110,12 +110,15 @@ class FaceMesher {
     bool is_lost = false;
     Triangulation mesh;
     std::vector<Border> borders;
+    std::vector<std::size_t> settled_on{};  ///< points of its edges, when it was put on them
   };
 
   [[nodiscard]] Made made_of(std::size_t face) const {
     Made out{.face = face};
     try {
       out.borders = taken_from(faces_[face], out.mesh);
+    } catch (const Standard_OutOfMemory&) {
+      throw;
     } catch (const Standard_Failure&) {
       out.is_lost = true;
       out.borders.clear();
@@ -135,10 +138,16 @@ class FaceMesher {
         mesh = std::move(between->mesh);
         continue;
       }
+      std::vector<std::size_t> points;
+      for (const Border& border : face.borders) points.push_back(edge_points_[border.edge].size());
+      if (points == face.settled_on && !points.empty()) continue;
+      face.settled_on = std::move(points);
       mesh = face.mesh;
       try {
         settle(face.borders, mesh);
         face.is_lost = !ends_at_edges(face.borders, mesh) || is_folded(face);
+      } catch (const Standard_OutOfMemory&) {
+        throw;
       } catch (const Standard_Failure&) {
         face.is_lost = true;
       }
@@ -211,30 +220,12 @@ class FaceMesher {
     return sum.is_zero();
   }
 
-  /// As its triangles are, not as the parameters are that they were made in.
   [[nodiscard]] bool is_folded(const Made& made) const {
+    if (std::holds_alternative<Plane>(geometry_.faces[made.face].surface)) return false;
     const Triangulation& mesh = geometry_.faces[made.face].mesh;
-    const TopoDS_Face& face = faces_[made.face];
-    TopLoc_Location location;
-    const Handle(Poly_Triangulation) own = BRep_Tool::Triangulation(face, location);
-    if (std::holds_alternative<Plane>(geometry_.faces[made.face].surface) || !own->HasUVNodes()) return false;
-    std::vector<BorderPoint> points;
-    for (int i = 1; i <= own->NbNodes(); ++i) {
-      const gp_Pnt2d at = own->UVNode(i);
-      points.push_back({mesh.points[static_cast<std::size_t>(i) - 1].point, {at.X(), at.Y()}});
-    }
-    // Of halves on the border, which have no parameters, the folds are those of the whole.
-    std::vector<std::array<std::uint32_t, 3>> triangles;
-    for (auto t : mesh.triangles) {
-      if (face.Orientation() == TopAbs_REVERSED) std::swap(t[1], t[2]);
-      if (std::ranges::all_of(t, [&](std::uint32_t p) { return p < points.size(); })) triangles.push_back(t);
-    }
-    double edges_known_to = 0;
-    for (const Border& border : made.borders)
-      edges_known_to =
-          std::fmax(edges_known_to, BRep_Tool::Tolerance(TopoDS::Edge(edges_(static_cast<int>(border.edge)))));
-    return fold_of(BRep_Tool::Surface(face), points, triangles) >
-           std::fmax(1e-3 * tolerance_.deflection_mm, 2 * edges_known_to);
+    std::vector<Vec3> places;
+    for (const MeshPoint& p : mesh.points) places.push_back(p.point);
+    return brep::is_folded(faces_[made.face], places, mesh.triangles, tolerance_.deflection_mm);
   }
 
   [[nodiscard]] bool is_closed() const {

@@ -75,9 +75,9 @@ class Feet {
 };
 
 /// Halves at the surface the segments between two triangles that `wants` names, given the segment and how far its
-/// middle is off.
+/// middle is off. Where a half would be turned over, the segment stays, unless it `must` not.
 template <typename Wants>
-void halve(Triangulation& mesh, Feet feet, const Mat3& lattice, const Wants& wants) {
+void halve(Triangulation& mesh, Feet feet, const Mat3& lattice, bool must, const Wants& wants) {
   constexpr int most_passes = 12;  // each halves what is too long
   // Triangles that have nothing to do with the surface get no better.
   const std::size_t most_triangles = 8 * mesh.triangles.size() + 1000;
@@ -124,7 +124,12 @@ void halve(Triangulation& mesh, Feet feet, const Mat3& lattice, const Wants& wan
         beside_middle = middle + near / norm(aside) * aside;
       auto point = feet(beside_middle, near, {foot->at, {}});
       if (!point) continue;
-      if (!is_upright(segment, sides, *point) && is_upright(segment, sides, *foot)) point = foot;
+      if (!is_upright(segment, sides, *point)) {
+        if (is_upright(segment, sides, *foot))
+          point = foot;
+        else if (!must)
+          continue;
+      }
       const auto fresh = static_cast<std::uint32_t>(mesh.points.size());
       mesh.points.push_back({.point = point->point});
       beside.emplace_back(point->at);
@@ -162,7 +167,7 @@ SegmentName name_of(MeshPoint a, MeshPoint b) {
 
 void fit_triangles(Triangulation& mesh, const Handle(Geom_Surface) & surface, const Mat3& lattice, double deflection) {
   constexpr int searches = 32;
-  halve(mesh, {surface, searches}, lattice, [&](const Segment&, double off) { return off > deflection; });
+  halve(mesh, {surface, searches}, lattice, false, [&](const Segment&, double off) { return off > deflection; });
 }
 
 void part_segments(const std::vector<MeshedFace>& faces, const Mat3& lattice, const Box3& box, double tolerance) {
@@ -179,7 +184,7 @@ void part_segments(const std::vector<MeshedFace>& faces, const Mat3& lattice, co
           if (std::fabs(a[i] - wall) < tolerance && std::fabs(b[i] - wall) < tolerance) return true;
       return false;
     };
-    halve(*face.mesh, {face.surface, std::numeric_limits<int>::max()}, lattice,
+    halve(*face.mesh, {face.surface, std::numeric_limits<int>::max()}, lattice, true,
           [&, given = points.size()](const Segment& segment, double) {
             if (segment[1] >= given) return false;  // a half: nobody else has its middle
             const auto found = uses.find(name_of(points[segment[0]], points[segment[1]]));

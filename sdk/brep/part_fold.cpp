@@ -17,6 +17,7 @@
 #include "realise_lattice.hpp"
 #include "realise_part.hpp"
 #include "solid_primitive.hpp"
+#include "step_telling.hpp"
 #include "surface_point.hpp"
 
 namespace meso::brep {
@@ -67,20 +68,24 @@ std::size_t solids_cut(const Body& pieces, const Solids& before) {
   return static_cast<std::size_t>(std::ranges::count(is_left, true));
 }
 
-/// Booleans of struts that fill their cells take minutes and fail. Half a cell is refused before anything is tried.
+/// Booleans of struts that fill their cells take minutes and fail. Half a cell, or a block, is refused before anything
+/// is tried.
 bool struts_fit(const Thickness& thickness, double most, const FoldContext& context) {
-  if (thickness.ratio() <= most) return true;
+  if (thickness.ratio() <= most && !thickness.is_block) return true;
+  const bool by_balls = thickness.ball > thickness.edge;
   context.solid.report(
       Code::geometry_struts_thick, context.where(),
-      {"radius " + format_number(thickness.radius) + " mm in cells of " + format_number(thickness.edge) + " mm"});
+      {(by_balls ? "balls of radius " + format_number(thickness.ball) : "radius " + format_number(thickness.radius)) +
+       " mm in cells of " + format_number(thickness.edge) + " mm" +
+       (thickness.is_block ? ", which leave nothing of a cell open" : "")});
   return false;
 }
 
 /// Where the beams are no graph, cells that differ are joined one by one if they are few.
-bool may_take_booleans(const GraphStep& graph, const FoldContext& context) {
-  if (graph.may_be_joined) return true;
+bool may_take_booleans(bool may_be_joined, const std::string& why_no_graph, const FoldContext& context) {
+  if (may_be_joined) return true;
   context.solid.report(Code::brep_not_realised, context.where(),
-                       {"beams that differ and meet a body: " + graph.why_not});
+                       {"beams that differ and meet a body: " + why_no_graph});
   return false;
 }
 
@@ -106,7 +111,8 @@ std::optional<FoldedPart> PartFold::fold(const Part& part, bool is_outermost) {
   if (part.steps.size() > 1 && try_beams(state, part, is_outermost)) return state;
   if (context_.sink.has_errors()) return {};
   for (std::size_t i = 0; i < part.steps.size(); ++i) {
-    done_ = static_cast<double>(i) / static_cast<double>(part.steps.size());
+    // What the part is made of is made within one of its steps.
+    if (is_outermost) done_ = static_cast<double>(i) / static_cast<double>(part.steps.size());
     options_.run.report("realise", done_);
     const bool last = i + 1 == part.steps.size();
     if (is_outermost && may_join(part, i, state.solids) && try_joined(state, part, i)) return state;
@@ -122,7 +128,7 @@ bool PartFold::step(FoldedPart& state, const Part& part, const Apply& apply, boo
                     {apply.radius ? "fillets of a radius between operands" : "skins of a thickness"});
     return false;
   }
-  FoldContext context{context_, apply, 0, options_.max_boolean_solids};
+  FoldContext context{context_, apply, 0, options_.max_boolean_solids, done_};
   if (apply.clearance) {
     const auto clearance = evaluation_.value(*apply.clearance, apply.id_in_source, "clearance", context_.sink);
     if (!clearance) return false;
@@ -158,21 +164,29 @@ std::optional<FoldStep> PartFold::apply_pattern(FoldedPart& state, const Part& p
     is_done =
         try_template(state, part, *cells, context, stays_body, may_be_graph ? FusedLimit{0, false} : FusedLimit{});
   if (is_done || context_.sink.has_errors() || !struts_fit(thickness, 0.4, context)) return {};
-  options_.run.report("realise", done_);  // why it is no lattice is for before the minutes that it may now take
+  options_.run.report("realise", context.done);  // why it is no lattice is for before the minutes that it may now take
+  std::string why_no_graph;
   if (may_be_graph) {
     GraphStep of_graph = apply_graph(state.solids, *cells, context, state.counts);
     if (of_graph.step && misses(*of_graph.step, state, part, *cells, apply)) return {};
     if (of_graph.step || context_.sink.has_errors()) return std::move(of_graph.step);
+    why_no_graph = std::move(of_graph.why_not);
     if (differ && (cells->lattice_of_places() || pattern->mapping == CellMapping::conformal)) {
       if (of_graph.may_be_fused)
         is_done = try_template(state, part, *cells, context, stays_body, *of_graph.may_be_fused);
-      if (is_done || context_.sink.has_errors() || !may_take_booleans(of_graph, context)) return {};
+      if (is_done || context_.sink.has_errors() || !may_take_booleans(of_graph.may_be_joined, why_no_graph, context))
+        return {};
     }
   }
   const bool is_union = apply.operation == ApplyOperation::union_ && state.solids.empty();
   auto made = is_union ? apply_beams(state, *cells, context) : std::nullopt;
   if (context_.sink.has_errors()) return {};
-  if (!made) made = apply_cells(state.solids, *cells, context, state.counts);
+  if (!made) {
+    StepTelling telling(*cells, context, !state.solids.empty());
+    if (!why_no_graph.empty()) telling.add_reason("nor do the beams meet the body as one: " + why_no_graph);
+    made = apply_cells(state.solids, *cells, telling.context(), state.counts);
+    telling.pass_on();
+  }
   if (made && misses(*made, state, part, *cells, apply)) return {};
   return made;
 }
@@ -232,8 +246,10 @@ bool PartFold::try_lattice(FoldedPart& state, const eval::CellStream& cells, con
   std::optional<CellRule> whole_cells;
   if (const auto rule = apply.boundary.value_or(BoundaryRule::clip); rule != BoundaryRule::clip)
     whole_cells = CellRule{rule, apply.test.value_or(InsideTest::box), context.clearance};
+  StepTelling telling(cells, context, !state.solids.empty());
   auto lattice = lattice_part({.clip = state.solids, .whole_cells = whole_cells, .mesh = way.mesh, .fused = way.fused},
-                              cells, context_);
+                              cells, telling.context().solid);
+  telling.pass_on();
   if (!lattice) return false;
   state.counts.placed += cells.size();
   state.counts.kept += lattice->kept;
@@ -264,7 +280,8 @@ bool PartFold::try_joined(FoldedPart& state, const Part& part, std::size_t at) {
   const Pattern* pattern = evaluation_.find_pattern(pattern_step.pattern->text);
   const auto cells = pattern != nullptr ? evaluation_.cells(*pattern, context_.sink) : std::nullopt;
   if (!cells || cells->size() > options_.run.max_cells || !cells->lattice() || cells->shape_varies()) return false;
-  if (strut_thickness(*cells, context_.sink).ratio() > 0.5) return false;
+  if (const Thickness thickness = strut_thickness(*cells, context_.sink); thickness.ratio() > 0.5 || thickness.is_block)
+    return false;
   if (!eval::check_reach(evaluation_, *cells, pattern_step, part, box_of_all(state.solids), {}, context_.sink))
     return false;
   CellCounts counts = state.counts;
@@ -274,12 +291,11 @@ bool PartFold::try_joined(FoldedPart& state, const Part& part, std::size_t at) {
     if (!operand) return false;
     rest.push_back({&part.steps[i], std::move(*operand)});
   }
-  DiagnosticSink apart;  // the usual way tells again what is wrong with the bodies
-  const SolidContext solid_context{context_.source, context_.run, apart, this};
-  const FoldContext context{solid_context, pattern_step, 0, options_.max_boolean_solids};
-  auto made = joined_lattice(state.solids, pattern_step, *cells, rest, fineness(options_), context);
-  for (const Diagnostic& d : apart.diagnostics())
-    if (made || d.code == Code::geometry_not_repeatable) context_.sink.report(d);
+  const FoldContext context{context_, pattern_step, 0, options_.max_boolean_solids};
+  StepTelling telling(*cells, context, true);
+  auto made = joined_lattice(state.solids, pattern_step, *cells, rest, fineness(options_), telling.context());
+  // The usual way tells again what is wrong with the bodies.
+  telling.pass_on([&](const Diagnostic& d) { return made || d.code == Code::geometry_not_repeatable; });
   if (!made) return false;
   if (const Part* inner = part_in_cells(*pattern)) counts = sum_of(counts, counts_inside(*inner));
   counts.placed += cells->size();

@@ -97,7 +97,7 @@ class PartFold final : public PartMaker {
   const eval::Evaluation& evaluation_;
   const RealiseOptions& options_;
   SolidContext context_;
-  double done_ = 0;  ///< share of the steps of the part that is made
+  double done_ = 0;  ///< share of the steps of the outermost part that is made
   std::map<const Part*, Operand> operands_;
   std::map<const Part*, std::optional<eval::CellStream>> only_cells_;
   std::map<const Part*, std::optional<Beams>> beams_;

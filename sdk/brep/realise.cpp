@@ -9,6 +9,7 @@
 #include "in_memory.hpp"
 #include "meso/brep/measure.hpp"
 #include "meso/brep/placement.hpp"
+#include "meso/eval/pattern_reach.hpp"
 #include "part_fold.hpp"
 #include "realise_part.hpp"
 #include "shape_to_body.hpp"
@@ -53,7 +54,8 @@ void append(Realisation& to, Realisation from) {
 class Builder {
  public:
   Builder(const eval::Evaluation& evaluation, const RealiseOptions& options, DiagnosticSink& sink)
-      : options_(options),
+      : evaluation_(evaluation),
+        options_(options),
         sink_(sink),
         context_{evaluation.checked().source(), options.run, sink},
         fold_(evaluation, options, sink) {}
@@ -81,7 +83,7 @@ class Builder {
     auto folded = fold_.outermost(part);
     if (!folded) return {};
     if (folded->body ? folded->body->solids.empty() : folded->solids.empty()) {
-      context_.report(Code::geometry_empty, part.id_in_source, {part.id.text});
+      sink_.report(eval::empty_part(evaluation_, part));
       return {};
     }
     Realisation result{
@@ -94,6 +96,7 @@ class Builder {
     return result;
   }
 
+  const eval::Evaluation& evaluation_;
   const RealiseOptions& options_;
   DiagnosticSink& sink_;
   SolidContext context_;

@@ -22,6 +22,7 @@ struct FoldContext {
   const Apply& apply;
   double clearance = 0;
   std::size_t max_boolean_solids = 600;
+  double done = 0;  ///< share of the steps of the part that is made
 
   [[nodiscard]] ElementId where() const { return apply.id_in_source; }
   /// Cutters, which hardly meet each other, cost a tenth of what solids cost that are united.

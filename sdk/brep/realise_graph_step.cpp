@@ -13,6 +13,7 @@
 #include "point_within.hpp"
 #include "realise_beam_graph.hpp"
 #include "realise_part.hpp"
+#include "step_telling.hpp"
 
 namespace meso::brep {
 namespace {
@@ -169,22 +170,32 @@ struct GraphSolids {
   bool may_be_joined = false;
 };
 
-GraphSolids too_large(std::uint64_t faces) {
-  return {{},
-          "a boolean of " + std::to_string(faces) + " faces or more takes too long, " +
-              std::to_string(most_graph_faces) +
-              " are the most; nodeRadius=\"auto\" takes none in a lattice of boxes side by side"};
+GraphSolids too_large(std::uint64_t faces, const eval::CellStream& cells, const FoldContext& context) {
+  std::string why = "a boolean of " + std::to_string(faces) + " faces or more takes too long, " +
+                    std::to_string(most_graph_faces) + " are the most";
+  if (would_gain_from_balls(cells, context.solid))
+    why += "; nodeRadius=\"auto\" takes none in a lattice of boxes side by side";
+  return {{}, std::move(why)};
+}
+
+/// Before the minutes that it may now take.
+void tell_of_minutes(std::size_t faces, const FoldContext& context) {
+  constexpr std::size_t quickly = 2'000;
+  if (faces <= quickly) return;
+  const double minutes = std::ceil(seconds_a_graph_face * static_cast<double>(faces) / 60);
+  context.solid.report(Code::geometry_long_boolean, context.where(), {std::to_string(faces), format_number(minutes)});
+  context.solid.run.report("realise", context.done);
 }
 
 GraphSolids graph_solids(const eval::CellStream& cells, const FoldContext& context) {
   const SolidContext& solid = context.solid;
   constexpr std::uint64_t most_cells = 100'000;  // to be looked at: a second
-  if (cells.size() > most_cells) return too_large(cells.size());
+  if (cells.size() > most_cells) return too_large(cells.size(), cells, context);
   SnappedRadii snapped;
   std::string why;
   const auto graph = beam_graph(cells, snapped, why, solid);
   if (!graph) return {{}, why, FusedLimit{}, true};
-  if (graph->struts.size() > most_graph_faces) return too_large(graph->struts.size());
+  if (graph->struts.size() > most_graph_faces) return too_large(graph->struts.size(), cells, context);
   DiagnosticSink apart;
   const SolidContext own{solid.source, solid.run, apart, solid.parts};
   const auto made = beam_graph_part(cells, context.where(), {.run = solid.run}, own);
@@ -199,10 +210,12 @@ GraphSolids graph_solids(const eval::CellStream& cells, const FoldContext& conte
       solid.report(Code::geometry_struts_thick, context.where(), {thick});
     return {{}, why};
   }
-  if (const std::size_t faces = measure(made->body).faces; faces > most_graph_faces) return too_large(faces);
+  if (const std::size_t faces = measure(made->body).faces; faces > most_graph_faces)
+    return too_large(faces, cells, context);
   // Cells that keep apart are placed, not joined.
   if (cells.size() > 1 && 2 * made->body.solids.size() > cells.size())
     return {{}, "the cells keep apart", FusedLimit{}, true};
+  tell_of_minutes(measure(made->body).faces, context);
   auto solids = solids_from(made->body, Edges::as_they_are);
   if (!solids) return {{}, "OpenCASCADE's faces do not enclose what the beams hold", FusedLimit{}, true};
   return {std::move(*solids), {}};

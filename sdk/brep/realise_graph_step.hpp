@@ -17,6 +17,7 @@ namespace meso::brep {
 
 /// About two minutes of a processor.
 inline constexpr std::size_t most_graph_faces = 12'000;
+inline constexpr double seconds_a_graph_face = 0.01;
 
 /// Beams that are clipped, whatever the operation.
 [[nodiscard]] bool may_be_graph_step(const Solids& body, const eval::CellStream& cells, const FoldContext& context);

@@ -7,7 +7,9 @@
 #include "boolean.hpp"
 #include "box_lattice.hpp"
 #include "lattice/cells_of_boxes.hpp"
+#include "lattice/circles_apart.hpp"
 #include "lattice/varied_cells.hpp"
+#include "meso/eval/cell_fit.hpp"
 #include "solid_primitive.hpp"
 #include "solid_shape.hpp"
 
@@ -167,12 +169,21 @@ std::optional<std::vector<CellPrimitive>> primitives_of(const eval::BeamsShape& 
   return out;
 }
 
+bool have_extent(const eval::BeamsShape& beams) {
+  return std::ranges::all_of(beams.struts, [&](const eval::Strut& s) {
+    return norm(beams.nodes[s.to].position - beams.nodes[s.from].position) > smallest_size &&
+           std::min(s.radius_from, s.radius_to) > smallest_size;
+  });
+}
+
 std::optional<CellShape> repeated_cell(const eval::Shape& shape, const eval::BoxShape& box,
                                        const SolidContext& context) {
   const Box3 bounds{box.corner, box.corner + box.size};
-  if (const auto* beams = std::get_if<eval::BeamsShape>(&shape.value))
+  if (const auto* beams = std::get_if<eval::BeamsShape>(&shape.value)) {
+    if (!have_extent(*beams)) return {};  // an error that the usual way tells
     if (auto primitives = primitives_of(*beams))
       return cell_shape({.box = bounds, .primitives = std::move(*primitives)}, context.sink);
+  }
   auto solids = solid_from_shape(shape, {}, context);
   if (!solids || solids->empty()) return {};
   return CellShape{.box = bounds, .solids = std::move(*solids), .primitives = {}};
@@ -313,6 +324,8 @@ Thickness strut_thickness(const eval::CellStream& cells, DiagnosticSink& sink) {
   Thickness out{0, std::max({first->box.size.x, first->box.size.y, first->box.size.z})};
   for (const eval::Strut& strut : beams->struts)
     out.radius = std::max({out.radius, strut.radius_from, strut.radius_to});
+  for (const eval::StrutNode& node : beams->nodes) out.ball = std::max(out.ball, node.ball_radius);
+  out.is_block = (out.ratio() > 0.4 || out.ball > out.edge) && eval::fill(*beams, first->box);
   return out;
 }
 
@@ -325,19 +338,24 @@ constexpr FusedLimit few_fused{.most = 60, .is_told = false};
 struct ClipAttempt {
   CellShape cell;
   CellClipper::Ways ways = CellClipper::Ways::all;
-  std::optional<std::size_t> again{};  ///< worth it if that attempt was given up
+  bool is_wider = false;                  ///< balls have gained a little
+  std::optional<std::size_t> again = {};  ///< worth it if that attempt was given up
 };
 
-/// Where a line of a body ends in the pole of a ball, or a face touches one, the second attempt keeps poles out of the
-/// cell: sooner than the cell as it is in all ways. The third has cells put together, whose balls have poles in several
-/// places.
+/// Where a line of a body ends in the pole of a ball, or a face touches one, cells that are put together have poles in
+/// several places; where a face passes close by the point in which two struts touch, balls that are a little larger
+/// have no such point. Where cells cannot be put together, there may yet be other places for the poles.
 std::vector<ClipAttempt> clip_attempts(const CellShape& cell) {
   using Ways = CellClipper::Ways;
   const auto poles_aside = with_poles_aside(cell);
-  if (!poles_aside) return {{cell}};
-  std::vector<ClipAttempt> out{{cell, Ways::first}, {*poles_aside}};
+  const auto apart = with_circles_apart(cell);
+  std::vector<ClipAttempt> out{{cell, poles_aside ? Ways::first : Ways::all}};
   if (auto varied = as_varied(cell)) out.push_back({std::move(*varied)});
-  out.push_back({cell, Ways::all, 0});
+  if (poles_aside) out.push_back({*poles_aside});
+  if (apart && cell.varied) out.push_back({*apart, Ways::all, true});
+  if (apart)
+    if (auto varied = as_varied(*apart)) out.push_back({std::move(*varied), Ways::all, true});
+  if (poles_aside) out.push_back({cell, Ways::all, false, 0});
   return out;
 }
 
@@ -346,6 +364,7 @@ std::optional<ClippedLattice> clipped_lattice(const Found& found, const Index3& 
   std::vector<DiagnosticSink> told;
   std::vector<bool> is_given_up;
   std::optional<ClippedLattice> made;
+  bool is_wider = false;
   for (const ClipAttempt& attempt : clip_attempts(found.cell)) {
     if (made || context.run.should_stop() || (!told.empty() && told.back().has_errors())) break;
     told.emplace_back();
@@ -359,6 +378,7 @@ std::optional<ClippedLattice> clipped_lattice(const Found& found, const Index3& 
                               .fused = attempt.cell.varied && !found.cell.varied ? few_fused : request.fused,
                               .ways = attempt.ways};
     made = clipped_lattice_body(attempt.cell, last, found.body, options, context.run, told.back());
+    is_wider = attempt.is_wider;
     is_given_up.back() = made && made->is_given_up;
     if (is_given_up.back()) made.reset();
   }
@@ -369,6 +389,7 @@ std::optional<ClippedLattice> clipped_lattice(const Found& found, const Index3& 
   if (made) helps = &told.back();
   if (helps != nullptr)
     for (const Diagnostic& d : helps->diagnostics()) context.sink.report(d);
+  if (made && is_wider) context.sink.report({.code = Code::geometry_balls_enlarged});
   if (!made && context.run.should_stop() && (helps == nullptr || helps != &told.back()))  // between two
     context.sink.report({.code = context.run.out_of_time() ? Code::limit_time : Code::cancelled});
   return made;

@@ -49,6 +49,8 @@ struct LatticeRequest {
 /// that are side by side are one. 0 where there are no neighbours, no box or no struts, or where boxes are bent.
 struct Thickness {
   double radius = 0, edge = 1;
+  double ball = 0;        ///< the largest radius of a ball
+  bool is_block = false;  ///< struts thicker than 0.4 of the edge, or balls larger than it, leave nothing of a box open
   [[nodiscard]] double ratio() const { return radius / edge; }
 };
 [[nodiscard]] Thickness strut_thickness(const eval::CellStream& cells, DiagnosticSink& sink);

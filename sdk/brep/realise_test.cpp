@@ -80,6 +80,22 @@ TEST_F(Realise, FragmentsAreAnErrorWhereTheRuleSaysSo) {
 TEST_F(Realise, EmptyPart) {
   EXPECT_FALSE(realised(block + balls(2, 40) + part(R"(<apply pattern="c" operation="intersection"/>)")));
   EXPECT_EQ(first_code(), Code::geometry_empty);
+  const Diagnostic& told = sink_.diagnostics().front();
+  EXPECT_EQ(told.path, "/meso/parts/part[1]");
+  ASSERT_EQ(told.related.size(), 1u);
+  EXPECT_EQ(told.related[0].note, "pattern 'c' has its first cell at (40, 0, 0) mm");
+}
+
+TEST_F(Realise, APartWithoutCells) {
+  for (const bool with_body : {true, false}) {
+    const std::string apply =
+        std::string("<apply pattern=\"c\" operation=\"") + (with_body ? "intersection" : "union") + "\"/>";
+    EXPECT_FALSE(realised((with_body ? block : "") + balls(0, 4) + part(apply, with_body)));
+    EXPECT_EQ(sink_.diagnostics().size(), 1u);
+    EXPECT_EQ(first_code(), Code::geometry_empty);
+    ASSERT_EQ(sink_.diagnostics().front().related.size(), 1u);
+    EXPECT_EQ(sink_.diagnostics().front().related[0].note, "pattern 'c' has no cells");
+  }
 }
 
 // Inside of the body's box, at the middle of a bore or at its wall.
@@ -167,6 +183,36 @@ TEST_F(Realise, AlignedLattice) {
   EXPECT_EQ(made->cells.placed, 24u);
   EXPECT_EQ(made->cells.kept, 12u);
   EXPECT_EQ(made->body.solids.size(), 1u);
+}
+
+TEST_F(Realise, BeamsWithoutExtentAreOneError) {
+  for (const std::string beam : {"x=\"1.0000005\"/><beam", "x=\"4\"/><beam radius=\"1e-7\""}) {
+    EXPECT_FALSE(realised(R"(<unitCells><unitCell id="u"><box dx="5" dy="5" dz="5"/><beams radius="0.5">
+         <node id="a" x="1" y="1" z="1"/><node id="b" y="1" z="1" )" +
+                          beam + R"( from="a" to="b"/></beams></unitCell></unitCells><patterns><pattern id="c"
+         unitCell="u"><loop index="i" axis="x" count="2" spacing="5"/></pattern></patterns>)" +
+                          part(R"(<apply pattern="c" operation="union"/>)", false)));
+    EXPECT_EQ(sink_.diagnostics().size(), 1u);
+    EXPECT_EQ(first_code(), Code::geometry_size);
+    EXPECT_NE(message(sink_.diagnostics().front()).find(" of the beam at (1 1 1) mm must"), std::string::npos);
+    EXPECT_GT(sink_.diagnostics().front().where.line, 0u);
+  }
+}
+
+// What the outermost cells send over the pattern's rim is in boxes that no cell has.
+TEST_F(Realise, NoMoreCellsAreKeptThanArePlaced) {
+  const auto made = realised(macrostructure(R"(<box x="-1.2" y="-1.3" z="-1.4" dx="13" dy="8" dz="8"/>)") +
+                             R"(<unitCells><unitCell id="u"><box dx="5" dy="5" dz="5"/><beams radius="0.5"
+         nodeRadius="1"><node id="a" x="0" y="2.5" z="2.5"/><node id="b" x="5" y="2.5" z="2.5"/>
+         <beam from="a" to="b"/></beams></unitCell></unitCells><patterns><pattern id="c" unitCell="u">
+         <loop index="i" axis="x" count="2" spacing="5"/></pattern></patterns>)" +
+                             part(R"(<apply pattern="c" operation="intersection"/>)"));
+  // Three balls, and two struts between the planes in which they leave them.
+  const double h = 1 - std::sqrt(0.75), cap = pi * h * h * (3 - h) / 3;
+  expect_body(made, "lattice", 3 * ball - 4 * cap + 2 * pi * 0.25 * (5 - 2 * (1 - h)));
+  EXPECT_EQ(made->cells.placed, 2u);
+  EXPECT_EQ(made->cells.kept, 2u);
+  EXPECT_EQ(made->cells.crossing, 0u);
 }
 
 }  // namespace

@@ -37,6 +37,38 @@ const std::string block = R"(<box dx="8" dy="4" dz="4"/>)",
 const std::string graded = R"(<set parameter="r" value="0.3 + 0.02*global.x" at="node"/>)",
                   alike = R"(<set parameter="r" value="0.3" at="node"/>)";
 
+bool is_triangulated(const Body& body) {
+  bool all = !body.solids.empty();
+  for (const Solid& solid : body.solids)
+    solid.outer.visit(
+        [&](const FaceInstance& face) { all = all && !solid.outer.geometry->faces[face.face].mesh.triangles.empty(); });
+  return all;
+}
+
+std::string with_radius(const std::string& radius, std::string cells) {
+  const std::string usual = "id=\"r\" value=\"0.3\"";
+  return cells.replace(cells.find(usual), usual.size(), "id=\"r\" value=\"" + radius + "\"");
+}
+
+/// Of a body-centred cell of 4 mm with automatic balls of radius sqrt(3) r: two balls without the caps that lie in
+/// their eight struts, and eight struts between their circles.
+double closed_form(double r) {
+  const double pi = std::numbers::pi, ball = std::sqrt(3) * r, away = std::sqrt(2) * r, height = ball - away;
+  const double cap = pi * height * height * (3 * ball - height) / 3;
+  return 2 * (4.0 / 3 * pi * ball * ball * ball - 8 * cap) + 8 * pi * r * r * (2 * std::sqrt(3) - 2 * away);
+}
+
+// Where struts touch in points, OpenCASCADE finds the union of the cell's balls and struts for some radii, and for
+// others not: boxes are then put together without it.
+TEST_F(RealiseTouching, AnyRadiusInABlockOnPlanesBetweenBoxes) {
+  for (const char* radius : {"0.2", "0.3", "0.4", "0.5"}) {
+    const auto made = realised(macrostructure(block) + with_radius(radius, two_cells("")), {.mesh = true});
+    expect_body(made, "lattice", 2 * closed_form(std::stod(radius)));
+    EXPECT_TRUE(is_triangulated(made->body));
+    EXPECT_TRUE(sink_.diagnostics().empty());
+  }
+}
+
 // The cylinder touches the plane between the boxes and one in which they end.
 TEST_F(RealiseTouching, APlaneBetweenBoxesThatARoundFaceTouches) {
   const auto whole = realised(macrostructure(block) + two_cells(graded));
@@ -67,6 +99,57 @@ TEST_F(RealiseTouching, ACutCloseToAPointOfContact) {
   EXPECT_NEAR((measure(below->body).volume + measure(above->body).volume) / measure(whole->body).volume, 1, 1e-7);
 }
 
+/// What a hole leaves of the block's lattice and what is in the hole, against all of it: how far the sum is off.
+struct Parted {
+  Realisation outside, inside;
+  double off = 0;
+};
+std::string hole_at(double x, double y) {
+  const std::string at = " x1=\"" + std::to_string(x) + "\" y1=\"" + std::to_string(y) + "\"";
+  const std::string to = " x2=\"" + std::to_string(x) + "\" y2=\"" + std::to_string(y) + "\"";
+  return "<cylinder" + at + " z1=\"-1\"" + to + " z2=\"5\" radius=\"1.5\"/>";
+}
+
+class PartedBlock : public RealiseTouching {
+ protected:
+  std::optional<Parted> parted(const std::string& hole, const std::string& cells) {
+    const auto whole = realised(macrostructure(block) + cells);
+    auto inside = realised(macrostructure("<intersection>" + block + hole + "</intersection>") + cells);
+    auto outside = realised(macrostructure("<difference>" + block + hole + "</difference>") + cells, {.mesh = true});
+    if (!whole || !outside || !inside) return {};
+    const double sum = measure(outside->body).volume + measure(inside->body).volume;
+    return Parted{std::move(*outside), std::move(*inside), sum / measure(whole->body).volume - 1};
+  }
+};
+
+// The seam of the hole lies in a plane between two boxes, where a ball is: what the box holds is two wedges there.
+TEST_F(PartedBlock, AHoleTouchesAPlaneBetweenBoxesInItsSeam) {
+  for (const auto& cells : {two_cells(""), two_cells(alike)}) {
+    const auto parts = parted(hole_at(2.5, 0.5), cells);
+    ASSERT_TRUE(parts);
+    EXPECT_EQ(parts->outside.way, "lattice");
+    EXPECT_TRUE(audit(parts->outside.body).clean() && audit(parts->inside.body).clean());
+    EXPECT_TRUE(is_triangulated(parts->outside.body));
+    EXPECT_NEAR(parts->off, 0, 1e-7);
+  }
+}
+
+// The hole comes within 0.1 um of the plane between two boxes, and there of a point in which the circle of a strut
+// touches the plane: pieces of faces are 6 um long and a thousandth of that wide.
+TEST_F(PartedBlock, AHoleAtAPointOfContact) {
+  for (const auto& cells :
+       {with_radius("0.4", two_cells("")), two_cells(R"(<set parameter="r" value="0.4" at="node"/>)")}) {
+    const auto parts = parted(hole_at(5.50001, 3.51), cells);
+    ASSERT_TRUE(parts);
+    EXPECT_EQ(parts->outside.way, "lattice");
+    EXPECT_EQ(std::ranges::count(sink_.diagnostics(), Code::geometry_balls_enlarged, &Diagnostic::code), 1);
+    EXPECT_TRUE(audit(parts->outside.body).clean() && audit(parts->inside.body).clean());
+    EXPECT_TRUE(is_triangulated(parts->outside.body));
+    // Balls larger by 1e-4 of 0.7 mm add no more than that much of their surface.
+    EXPECT_NEAR(parts->off, 0, 1e-4);
+  }
+}
+
 /// Cells of 5 mm side by side, with some of the struts of a body-centred one, of 0.5 mm and without balls.
 std::string plain_cells(int count, const std::vector<std::string>& ends) {
   std::string nodes, beams;
@@ -81,14 +164,6 @@ std::string plain_cells(int count, const std::vector<std::string>& ends) {
          std::to_string(count) +
          R"("/><loop index="j" axis="y" spacing="5" count="1"/><loop index="k" axis="z" spacing="5" count="1"/></pattern></patterns>)" +
          part(R"(<apply pattern="c" operation="intersection"/>)");
-}
-
-bool is_triangulated(const Body& body) {
-  bool all = !body.solids.empty();
-  for (const Solid& solid : body.solids)
-    solid.outer.visit(
-        [&](const FaceInstance& face) { all = all && !solid.outer.geometry->faces[face.face].mesh.triangles.empty(); });
-  return all;
 }
 
 // The edge of a hole, 2 mm from its axis, grazes a strut that reaches a fifty-thousandth of a millimetre farther: what

@@ -34,10 +34,18 @@ class Balls {
   std::vector<Ball> balls_;
 };
 
-bool size_holds(const char* name, double value, ElementId where, const SolidContext& context) {
-  if (value > smallest_size && value < largest_size) return true;
-  context.report(Code::geometry_size, where, {name, format_number(value)});
+bool is_size(double value) { return value > smallest_size && value < largest_size; }
+
+bool refuse(std::string name, double value, ElementId where, const SolidContext& context) {
+  context.report(Code::geometry_size, where, {std::move(name), format_number(value)});
   return false;
+}
+
+bool sizes_hold(const eval::Strut& strut, Vec3 from, double length, ElementId where, const SolidContext& context) {
+  if (!is_size(length)) return refuse(size_of_beam_at("length", from), length, where, context);
+  for (const double radius : {strut.radius_from, strut.radius_to})
+    if (!is_size(radius)) return refuse(size_of_beam_at("radius", from), radius, where, context);
+  return true;
 }
 
 bool is_cone(const eval::Strut& strut) { return std::fabs(strut.radius_from - strut.radius_to) > smallest_size; }
@@ -49,6 +57,12 @@ TopoDS_Shape half_ball(Vec3 center, Vec3 outward_axis, double radius) {
 
 }  // namespace
 
+std::string size_of_beam_at(const char* what, Vec3 from) {
+  const auto rounded = [](double mm) { return format_number(std::nearbyint(mm * 1e4) / 1e4); };
+  return std::string("the ") + what + " of the beam at (" + rounded(from.x) + " " + rounded(from.y) + " " +
+         rounded(from.z) + ") mm";
+}
+
 std::optional<Solids> beam_primitives(const eval::BeamsShape& beams, const Affine& map, ElementId where,
                                       const SolidContext& context) {
   Balls balls;
@@ -59,15 +73,15 @@ std::optional<Solids> beam_primitives(const eval::BeamsShape& beams, const Affin
       return {};
     }
     if (node.ball_radius == 0) continue;
-    if (!size_holds("the radius of a node", node.ball_radius, where, context)) return {};
+    if (!is_size(node.ball_radius)) {
+      (void)refuse("the radius of a node", node.ball_radius, where, context);
+      return {};
+    }
     balls.add(node.position, node.ball_radius);
   }
   for (const eval::Strut& strut : beams.struts) {
     const Vec3 from = beams.nodes[strut.from].position, to = beams.nodes[strut.to].position;
-    if (!size_holds("the length of a beam", norm(to - from), where, context) ||
-        !size_holds("the radius of a beam", strut.radius_from, where, context) ||
-        !size_holds("the radius of a beam", strut.radius_to, where, context))
-      return {};
+    if (!sizes_hold(strut, from, norm(to - from), where, context)) return {};
     const Vec3 along = (to - from) / norm(to - from);
     solids.push_back(mapped(frustum(from, to, strut.radius_from, strut.radius_to), map));
     const auto add_cap = [&](BeamCap cap, Vec3 center, Vec3 outwards, double radius) {

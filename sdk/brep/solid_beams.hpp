@@ -14,4 +14,7 @@ namespace meso::brep {
 [[nodiscard]] std::optional<Solids> beam_primitives(const eval::BeamsShape& beams, const Affine& map, ElementId where,
                                                     const SolidContext& context);
 
+/// For people: "the length of the beam at (1 2 3) mm", where it begins.
+[[nodiscard]] std::string size_of_beam_at(const char* what, Vec3 from);
+
 }  // namespace meso::brep

@@ -100,8 +100,10 @@ double length(const PlanePoint& a, const PlanePoint& b) { return std::hypot(b[0]
 
 /// How far a clockwise triangle reaches over its longest side.
 double height_of_fold(const PlanePoint& a, const PlanePoint& b, const PlanePoint& c) {
+  const double over = -turn(a, b, c);
+  if (over <= 0) return 0;
   const double longest = std::max({length(a, b), length(b, c), length(c, a)});
-  return longest > 0 ? std::fmax(0, -turn(a, b, c)) / longest : 0;
+  return longest > 0 ? over / longest : 0;
 }
 
 /// One polygon that goes to each further loop and back along the shortest way.
@@ -136,6 +138,9 @@ std::optional<UnrolledMesh> least_folded(const std::vector<PlanePoint>& plane, c
   UnrolledMesh out;
   if (n < 3) return out;
   const auto at = [&](std::size_t i) -> const PlanePoint& { return plane[polygon[i]]; };
+  std::vector<double> side(n * n);  // looked up n times
+  for (std::size_t i = 0; i < n; ++i)
+    for (std::size_t k = 0; k < n; ++k) side[i * n + k] = length(at(i), at(k));
   std::vector<double> price(n * n, 0);
   std::vector<std::size_t> tip(n * n, 0);
   for (std::size_t span = 2; span < n; ++span)
@@ -144,11 +149,12 @@ std::optional<UnrolledMesh> least_folded(const std::vector<PlanePoint>& plane, c
       double least = HUGE_VAL;
       for (std::size_t m = i + 1; m < k; ++m) {
         const double sum = price[i * n + m] + price[m * n + k] + price_of_fold * height_of_fold(at(i), at(m), at(k)) +
-                           length(at(i), at(m)) + length(at(m), at(k));
+                           side[i * n + m] + side[m * n + k];
         if (sum < least) std::tie(least, tip[i * n + k]) = std::tuple(sum, m);
       }
       price[i * n + k] = least;
     }
+  if (!std::isfinite(price[n - 1])) return {};  // points without a place have no triangles
   std::vector<std::pair<std::size_t, std::size_t>> pending{{0, n - 1}};
   while (!pending.empty()) {
     const auto [i, k] = pending.back();

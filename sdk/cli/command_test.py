@@ -61,8 +61,9 @@ class Flags(CommandTest):
         good = self.file("good.meso", document())
         self.expect(2, "konvert", good, says="there is no verb 'konvert'")
         self.expect(2, "validte", good, says="did you mean 'validate'?")
-        self.expect(2, "info", "--jsn", good, says="there is no flag '--jsn'; did you mean '--json'?")
+        self.expect(2, "info", "--jsn", good, says="error USAGE: there is no flag '--jsn'; did you mean '--json'?")
         self.expect(2, "info", "--jsn=1", good, says="did you mean '--json'?")
+        self.expect(2, "validate", says="error USAGE: FILE is required")
         if "convert" in VERBS:
             self.expect(2, "convert", self.file("a.step", ""), self.out(), says='<import href="a.step"/>')
 

@@ -110,10 +110,11 @@ int main(int argc, char** argv) {
     try {
       app.parse(argc, argv);
     } catch (const CLI::ParseError& e) {
-      const std::string told = e.get_exit_code() == 0 ? "" : misspelt(app, words);
-      if (told.empty()) return app.exit(e) == 0 ? 0 : 2;
-      fmt::print(stderr, "{}\nRun with --help for more information.\n", told);
-      return 2;
+      if (e.get_exit_code() == 0) return app.exit(e);  // help and version
+      const std::string told = misspelt(app, words);
+      run.flags.json = std::ranges::find(words, "--json") != words.end();
+      run.usage_error(told.empty() ? e.what() : told);
+      return run.finish(meso::cli::Json::object());
     }
   }
   const int code = run_verb(run);

@@ -33,6 +33,15 @@ void Progress::show(std::string_view stage, double fraction) {
   std::fflush(stderr);
 }
 
+void Progress::reach(std::string_view stage, double fraction) {
+  reached_stage_ = stage;
+  reached_ = std::clamp(fraction, 0.0, 1.0);
+}
+
+std::string Progress::reached() const {
+  return reached_stage_.empty() ? "" : fmt::format("{}, {:.0f} %", reached_stage_, 100 * reached_);
+}
+
 void Progress::clear() {
   if (!visible_) return;
   fmt::print(stderr, "\r\033[K");

@@ -21,12 +21,18 @@ class Progress {
 
   /// At most ten lines a second, except for a change of stage.
   void show(std::string_view stage, double fraction);
+  /// Remembers, shown or not, how far the work is. One thread only.
+  void reach(std::string_view stage, double fraction);
+  /// As words: "realise, 40 %"; empty before that.
+  [[nodiscard]] std::string reached() const;
   /// Takes the bar away so that text can be written.
   void clear();
 
  private:
   ProgressStyle style_;
-  std::string stage_;
+  std::string reached_stage_;
+  double reached_ = 0;  ///< of that stage
+  std::string stage_;   ///< shown
   bool visible_ = false;
   std::chrono::steady_clock::time_point last_{};
 };

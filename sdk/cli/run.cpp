@@ -117,7 +117,10 @@ RunOptions Run::options() {
   out.progress = [this](std::string_view stage, double fraction) {
     // A warning helps most before the minutes that it is about; other threads may be told of progress while this one
     // adds to the sink.
-    if (std::this_thread::get_id() == owner_) print_diagnostics(Told::what_is_no_error);
+    if (std::this_thread::get_id() == owner_) {
+      print_diagnostics(Told::what_is_no_error);
+      progress_->reach(stage, fraction);
+    }
     progress_->show(stage, fraction);
   };
   options_ = out;
@@ -137,7 +140,7 @@ std::optional<CheckedDocument> Run::open(const std::string& file) {
 /// What is for information alone wants none, but for what makes minutes out of seconds.
 static bool wants_help(const Diagnostic& d) {
   return severity(d) != Severity::info || d.code == Code::geometry_not_repeatable ||
-         d.code == Code::geometry_struts_meet;
+         d.code == Code::geometry_struts_meet || d.code == Code::geometry_long_boolean;
 }
 
 void Run::print_diagnostics(Told what) {
@@ -148,6 +151,8 @@ void Run::print_diagnostics(Told what) {
   for (; printed_ < all.size() && may_be_told(all[printed_]); ++printed_) {
     const Diagnostic& d = all[printed_];
     fmt::print(stderr, "{}\n", render(d));
+    if ((d.code == Code::cancelled || d.code == Code::limit_time) && progress_ && !progress_->reached().empty())
+      fmt::print(stderr, "  the work was at: {}\n", progress_->reached());
     if (wants_help(d) && helped_.insert(d.code).second) fmt::print(stderr, "  help: {}\n", help(d.code));
   }
   if (is_over && sink.truncated()) fmt::print(stderr, "... and more: {} errors in all\n", sink.error_count());

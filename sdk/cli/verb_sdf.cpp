@@ -173,8 +173,17 @@ int write_document(Run& run, const sdf::Program& program, const operations::SdfO
   if (has_flags_of_meshes)
     return run.usage_error("a document states the design; --sharp, --tolerance and the like are flags of convert"),
            run.finish(Json{{"output", program.output}});
-  if (!operations::write_words(program, options.existing, options.run, run.sink)) return run.finish(Json::object());
-  return run.finish(Json{{"output", program.output}});
+  const auto written = operations::write_words(program, options.existing, options.run, run.sink);
+  if (!written) return run.finish(Json::object());
+  const int code = run.finish(Json{{"output", program.output},
+                                   {"parts", written->parts},
+                                   {"unitCells", written->unit_cells},
+                                   {"bytes", written->bytes}});
+  if (!run.flags.json)
+    fmt::print(stderr, "{}: {} part{}, {} unit cell{}, {} bytes\n", program.output, written->parts,
+               written->parts == 1 ? "" : "s", written->unit_cells, written->unit_cells == 1 ? "" : "s",
+               written->bytes);
+  return code;
 }
 
 int print_document(Run& run, const std::string& path) {

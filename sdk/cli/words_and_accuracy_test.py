@@ -97,7 +97,7 @@ class WordsAsDocuments(Command):
         self.meso(4, "sdf", f"--print {EXAMPLES / 'implicit' / 'gyroid_ball.meso'}", says="SDF_NOT_WORDS")
         self.meso(2, "sdf", "--print part.meso ball", says="USAGE")
         self.meso(3, "sdf", "--print none.meso", says="FILE_NOT_FOUND")
-        self.meso(0, "sdf", "ball -o part.meso")
+        self.meso(0, "sdf", "ball -o part.meso", says="part.meso: 1 part, 0 unit cells, ")
         self.meso(7, "sdf", "ball -o part.meso --no-clobber", says="WRITE_EXISTS")
 
     def test_new_words_have_faults(self):
@@ -113,6 +113,11 @@ class WordsAsDocuments(Command):
             ("strut.bcc 0.3", "less than a quarter"),
             ("strut.bbc 0.1", "did you mean 'strut.bcc'?"),
             ("ball repeat 0,0,0", "steps are positive"),
+            ("ball 5 out.stl", "there is no word '5'; 'ball' takes no size: 'scale 5' behind it scales it"),
+            ("ball box union 3", "'union' takes no number"),
+            ("ball shell 0.1 0.2", "'shell' takes t, separated by commas"),
+            ("ball out.stl", "-o out.stl writes it"),
+            ("expression 'sin(x'", "'(' has no matching ')'"),
             ("ball cylindrical 0", "it would not be bent"),
             ("ball box smooth-union -1", "not negative"),
         ]:
@@ -249,6 +254,14 @@ class Accuracy(Command):
             if tolerance == "0.1mm":
                 self.assertGreater(2 * takes, usage.ru_maxrss / 1024)
                 self.assertLess(takes / 2, usage.ru_maxrss / 1024)
+
+    @unittest.skipUnless(HAS_CONVERT, "this build does not convert")
+    def test_rounds_that_make_it_worse_ask_for_no_finer_grid(self):
+        """Where walls end at thin angles, refining moves what is far, and farther: the grid that the closest mesh asks for is enough."""
+        ball = EXAMPLES / "implicit/gyroid_ball.meso"
+        report = json.loads(self.meso(0, "convert", f"{ball} a.ply --tolerance 0.06mm --set radius=6mm --json"))
+        self.assertLessEqual(report["accuracy"]["distance"], 0.06)
+        self.assertLess(report["accuracy"]["gridSamples"], 2.1e6)
 
     @unittest.skipUnless(HAS_CONVERT, "this build does not convert")
     def test_edges_ask_for_no_finer_grid(self):

@@ -77,6 +77,54 @@ TEST(CellFit, BodiesOtherThanBeamsMayStandAsTheyLike) {
   EXPECT_EQ(told_of(two("0", "4"), ball).codes, Codes{Code::cells_coincide});
 }
 
+/// Diagonals of a cube of 4 mm: the middles of its edges and faces are 4 / sqrt(6) = 1.633 mm from all of them.
+std::string diagonals(const std::string& radius, const std::string& box = "dx='4' dy='4' dz='4'") {
+  std::string nodes, beams;
+  for (int corner = 0; corner < 8; ++corner) {
+    const std::string id = "n" + std::to_string(corner);
+    nodes += "<node id='" + id + "' x='" + (corner & 1 ? "4" : "0") + "' y='" + (corner & 2 ? "4" : "0") + "' z='" +
+             (corner & 4 ? "4" : "0") + "'/>";
+    if (corner < 4) beams += "<beam from='" + id + "' to='n" + std::to_string(7 - corner) + "'/>";
+  }
+  return "<box " + box + "/><beams radius='" + radius + "'>" + nodes + beams + "</beams>";
+}
+
+TEST(CellFit, BeamsThatFillTheirCellAreTold) {
+  EXPECT_EQ(told_of(two("4", "4"), diagonals("1.63").c_str()).codes, Codes{});
+  const Told full = told_of(two("4", "4"), diagonals("1.635").c_str());
+  ASSERT_EQ(full.codes, Codes{Code::beams_fill_cell});
+  EXPECT_EQ(full.arguments[0], "u");
+  EXPECT_EQ(full.arguments[1], "1.635");
+  EXPECT_EQ(full.arguments[2], "4 x 4 x 4");
+  // Two patterns of one cell are one fault of it.
+  EXPECT_EQ(told_of(two("4", "4"), diagonals("2.5").c_str(), "difference",
+                    "<pattern id='q' unitCell='u'>" + two("4", "4") + "</pattern>")
+                .codes,
+            Codes{Code::beams_fill_cell});
+}
+
+TEST(CellFit, BallsThatFillTheirCellAreNamed) {
+  // Two struts 0.01 radians apart: r / sin(angle / 2) = 60 mm.
+  const Told told = told_of(two("4", "4"),
+                            "<box dx='4' dy='4' dz='4'/><beams radius='0.3' nodeRadius='auto'><node id='a' x='0' y='0' "
+                            "z='0'/><node id='b' x='4' y='0' z='0'/><node id='c' x='4' y='0.04' z='0'/><beam from='a' "
+                            "to='b'/><beam from='a' to='c'/></beams>");
+  ASSERT_EQ(told.codes, Codes{Code::beams_fill_cell});
+  EXPECT_EQ(told.arguments[3].find("with balls of radius 60.0"), 0u);
+}
+
+TEST(CellFit, StrutsAsThickAsTheirBoxAreTold) {
+  const std::string along =
+      "<node id='a' x='2' y='2' z='0.5'/><node id='b' x='6' y='2' z='0.5'/><beam from='a' to='b'/>";
+  const std::string flat = "<box dx='4' dy='4' dz='1'/><beams radius='0.5'>" + along + "</beams>";
+  const std::string layers = two("4", "4") + loop("k", "z", "1");
+  EXPECT_EQ(told_of(layers, flat.c_str()).codes, Codes{Code::beams_fill_cell});
+  // One layer is as thick as its struts are, whatever its box.
+  EXPECT_EQ(told_of(two("4", "4"), flat.c_str()).codes, Codes{});
+  // Some cells of a gradient may be full.
+  EXPECT_EQ(told_of(two("4", "4"), ("<parameter id='t' value='1 + i'/>" + diagonals("t")).c_str()).codes, Codes{});
+}
+
 TEST(CellFit, CellsThatTurnOrGrowAreLeftAlone) {
   EXPECT_EQ(told_of(loop("i", "x", "0") + "<rotate x='0' y='0' z='1' angle='30deg*i'/>").codes, Codes{});
   EXPECT_EQ(told_of(loop("i", "x", "3 + i")).codes, Codes{});

@@ -23,11 +23,12 @@ std::shared_ptr<const CellStream::Impl> make_cell_stream(const std::shared_ptr<c
 
   constexpr std::uint64_t largest = std::uint64_t{1} << 62;
   const std::uint64_t limit = std::min(data->run.max_cells, largest);
-  const auto size = Walker(*program, sink).count(limit);
+  Walker walker(*program, sink);
+  const auto size = walker.count(limit);
   if (!size) return nullptr;
   if (*size > limit) {
     report(Code::limit_cells, {pattern.id_in_source, {}},
-           {pattern.id.text, *size == limit + 1 ? "more than " + std::to_string(limit) : std::to_string(*size),
+           {pattern.id.text, walker.is_exact() ? std::to_string(*size) : "more than " + std::to_string(limit),
             std::to_string(limit)});
     return nullptr;
   }

@@ -183,6 +183,24 @@ TEST(Limits, TooManyCellsAreToldAtOnce) {
               ElementsAre());
 }
 
+TEST(Limits, ACountThatIsNotExactSaysSo) {
+  const auto count_told = [](const std::string& loops) {
+    const Evaluation evaluation = evaluation_of(pattern_text(loops));
+    DiagnosticSink sink;
+    (void)evaluation.cells(*evaluation.find_pattern("p"), sink);
+    return sink.diagnostics().empty() ? "" : sink.diagnostics().front().args.at(1);
+  };
+  const auto loop = [](const std::string& index, const std::string& count) {
+    const std::string axis = index == "i" ? "x" : index == "j" ? "y" : "z";
+    return "<loop index='" + index + "' axis='" + axis + "' count='" + count + "' spacing='1'/>";
+  };
+  EXPECT_EQ(count_told(loop("i", "1e12")), "1000000000000");
+  EXPECT_EQ(count_told(loop("i", "1e6") + loop("j", "3e9")), "3000000000000000");
+  // More than an integer holds; and an inner count that was given up.
+  EXPECT_EQ(count_told(loop("i", "1e9") + loop("j", "1e9") + loop("k", "1e9")).find("more than "), 0u);
+  EXPECT_EQ(count_told(loop("i", "3") + loop("j", "1e12") + loop("k", "j")).find("more than "), 0u);
+}
+
 TEST(Limits, CancellationStopsAVisit) {
   EXPECT_THAT(faults_of(pattern_text("<loop index='i' axis='x' count='10' spacing='1'/>"),
                         {.run = {.cancelled = [] { return true; }}}),

@@ -257,6 +257,9 @@ TEST(Loops, CellsThatAllMissTheBodyAreTold) {
   EXPECT_EQ(reach_of("", far, "union", {}, loop), "");
   EXPECT_EQ(reach_of("", Box3{}, "difference", {}, loop), "");
   EXPECT_EQ(reach_of("<when test='i &gt; 9'/>", far, "difference", {}, loop), "PATTERN_KEEPS_NONE");
+  const std::string none = "<loop index='i' axis='x' count='0' spacing='1'/>";
+  EXPECT_EQ(reach_of("", near, "difference", {}, none), "PATTERN_KEEPS_NONE");
+  EXPECT_EQ(reach_of("", near, "union", {}, none), "");
 }
 
 // A cell of 2 x 3 x 4 mm.

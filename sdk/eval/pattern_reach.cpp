@@ -31,8 +31,8 @@ Found any_kept(const CellStream& cells, DiagnosticSink& sink) {
 
 std::string text_of(Vec3 p) { return format_number(p.x) + ", " + format_number(p.y) + ", " + format_number(p.z); }
 
-void warn_of_miss(const Evaluation& evaluation, const CellStream& cells, const Part& part, const Box3& body_mm,
-                  DiagnosticSink& sink) {
+/// Where the first cell stands that is kept; empty without one.
+std::string first_place(const CellStream& cells, DiagnosticSink& sink) {
   std::string first;
   (void)cells.visit(
       0, cells.size(),
@@ -41,9 +41,23 @@ void warn_of_miss(const Evaluation& evaluation, const CellStream& cells, const P
         return false;
       },
       sink);
+  return first;
+}
+
+void warn_of_miss(const Evaluation& evaluation, const CellStream& cells, const Part& part, const Box3& body_mm,
+                  DiagnosticSink& sink) {
+  const std::string first = first_place(cells, sink);
   Report{evaluation.checked().source(), sink}(
       Code::pattern_misses_part, {cells.pattern().id_in_source, {}},
       {cells.pattern().id.text, part.id.text, text_of(body_mm.min), text_of(body_mm.max), first});
+}
+
+/// A cut that takes nothing away. Of other operations the result tells.
+void warn_of_no_cells(const Evaluation& evaluation, const CellStream& cells, DiagnosticSink& sink) {
+  const Pattern& pattern = cells.pattern();
+  const Place place =
+      pattern.loops.empty() ? Place{pattern.id_in_source, {}} : Place{pattern.loops.front().id_in_source, "count"};
+  Report{evaluation.checked().source(), sink}(Code::pattern_keeps_none, place, {pattern.id.text, "0"});
 }
 
 std::string rounded(double length_mm) { return format_number(std::round(1e6 * length_mm) / 1e6); }
@@ -98,6 +112,8 @@ void report_no_reach(const Evaluation& evaluation, const CellStream& cells, cons
 
 bool check_reach(const Evaluation& evaluation, const CellStream& cells, const Apply& apply, const Part& part,
                  const Box3& body_mm, const MayReach& may_reach, DiagnosticSink& sink) {
+  if (cells.size() == 0 && apply.operation == ApplyOperation::difference && !body_mm.empty())
+    warn_of_no_cells(evaluation, cells, sink);
   if (apply.operation == ApplyOperation::union_ || body_mm.empty() || cells.size() == 0)
     return check_keeps_any(evaluation, cells, sink);
   const Found touching =
@@ -112,6 +128,28 @@ bool check_reach(const Evaluation& evaluation, const CellStream& cells, const Ap
   // What an intersection leaves is empty, and told as that.
   if (apply.operation == ApplyOperation::difference) warn_of_miss(evaluation, cells, part, body_mm, sink);
   return true;
+}
+
+Diagnostic empty_part(const Evaluation& evaluation, const Part& part) {
+  const SourceMap& source = evaluation.checked().source();
+  Diagnostic out{.code = Code::geometry_empty,
+                 .where = source.span(part.id_in_source),
+                 .path = source.path(part.id_in_source),
+                 .args = {part.id.text}};
+  for (const Apply& apply : part.steps) {
+    const Pattern* pattern = apply.pattern ? evaluation.find_pattern(apply.pattern->text) : nullptr;
+    DiagnosticSink untold;
+    const auto cells = pattern != nullptr ? evaluation.cells(*pattern, untold) : std::nullopt;
+    if (!cells) continue;
+    const std::string first = first_place(*cells, untold), name = "pattern '" + pattern->id.text + "' ";
+    const bool has_loops = cells->size() == 0 && !pattern->loops.empty();
+    out.related.push_back(
+        {has_loops ? source.span(pattern->loops.front().id_in_source, "count") : source.span(pattern->id_in_source),
+         cells->size() == 0 ? name + "has no cells"
+         : first.empty()    ? name + "keeps none of its cells"
+                            : name + "has its first cell at (" + first + ") mm"});
+  }
+  return out;
 }
 
 }  // namespace meso::eval

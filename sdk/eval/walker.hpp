@@ -20,6 +20,8 @@ class Walker {
   /// Number of cells; stops counting beyond `limit` (the result is then larger than it). Nothing if an expression
   /// failed.
   [[nodiscard]] std::optional<std::uint64_t> count(std::uint64_t limit);
+  /// Of the last count: else there are more cells than it says.
+  [[nodiscard]] bool is_exact() const { return !is_at_least_; }
 
   /// Visits the kept cells with ordinals in [first, last). REQUIRES: last <= the number of cells.
   [[nodiscard]] bool visit(std::uint64_t first, std::uint64_t last, const CellStream::Visitor& visitor);
@@ -69,6 +71,7 @@ class Walker {
   std::vector<Motion> motions_;                             ///< per statement; of those that move the frame
   int changed_ = constant_level;                            ///< outermost level that moved since the last placed cell
   std::uint64_t counted_ = 0;                               ///< indices that counting has stepped through
+  bool is_at_least_ = false;                                ///< the last count stopped before its end
   bool dropped_ = false;
   bool ended_ = false;
   Mat3 turn_, local_;

@@ -160,24 +160,28 @@ std::optional<std::uint64_t> Walker::count_from(std::size_t loop, std::uint64_t 
     // No count further in looks at this loop, so one of its indices speaks for all.
     const auto inner = count_from(loop + 1, limit);
     if (!inner) return std::nullopt;
-    return saturating_product(static_cast<std::uint64_t>(state_[loop].count), *inner);
+    const std::uint64_t all = saturating_product(static_cast<std::uint64_t>(state_[loop].count), *inner);
+    is_at_least_ = is_at_least_ || all == std::numeric_limits<std::uint64_t>::max();
+    return all;
   }
   if (!begin_places(loop)) return std::nullopt;
   std::uint64_t total = 0;
   for (std::int64_t i = first; i < end && total <= limit; ++i) {
     // Loops without cells take time too.
-    if (++counted_ > limit) return limit + 1;
+    if (++counted_ > limit) return is_at_least_ = true, limit + 1;
     if (!move_to(loop, i)) return std::nullopt;
     const auto inner = count_from(loop + 1, limit);
     if (!inner) return std::nullopt;
     total = *inner > limit - std::min(limit, total) ? limit + 1 : total + *inner;
   }
+  is_at_least_ = is_at_least_ || total > limit;
   return total;
 }
 
 std::optional<std::uint64_t> Walker::count(std::uint64_t limit) {
   assert(limit < std::numeric_limits<std::uint64_t>::max());
   counted_ = 0;
+  is_at_least_ = false;
   return count_from(0, limit);
 }
 

@@ -51,8 +51,6 @@ Loops loops_of(const TopoDS_Face& face, const TemplateEdges& kind, const Templat
   return loops;
 }
 
-Vec3 place_of(const MeshPoint& p, const Template& geometry) { return p.point + cell_origin(geometry, p.offset); }
-
 /// Where the edges run in a plane, to a millionth of the cell, it is as good as the surface. A face narrower than ten
 /// of those may be bent more, if much less than triangles may be off.
 std::optional<Triangulation> flat_mesh(const std::vector<MeshPoint>& border, const Template& geometry,

@@ -81,6 +81,7 @@ class CellSplit {
   const char* take_slivers_out();
   void take();
   [[nodiscard]] bool is_changed() const;
+  [[nodiscard]] bool is_touched_wall(const std::vector<PieceUse>& uses, const std::vector<std::uint8_t>& way) const;
   [[nodiscard]] const char* join_taken(UnionFind& joined) const;
   ClippedCell result();
 
@@ -357,6 +358,26 @@ bool CellSplit::is_changed() const {
   return whole != before;
 }
 
+/// An edge of the body along which it touches a plane of the cell: two pieces of the plane and two of the body that are
+/// taken meet there. That such a plane is a wall, beside which there is more, is seen when cells are joined.
+bool CellSplit::is_touched_wall(const std::vector<PieceUse>& uses, const std::vector<std::uint8_t>& way) const {
+  std::optional<std::uint32_t> plane;
+  std::size_t of_plane = 0, of_body = 0;
+  for (const PieceUse& use : uses) {
+    if (way[use.piece] == 0) continue;
+    const Piece& piece = faces_.pieces[use.piece];
+    if (use.piece >= faces_.of_cell) {
+      ++of_body;
+    } else {
+      if (plane.value_or(piece.of) != piece.of || BRepAdaptor_Surface(piece.face).GetType() != GeomAbs_Plane)
+        return false;
+      plane = piece.of;
+      ++of_plane;
+    }
+  }
+  return of_plane == 2 && of_body == 2;
+}
+
 const char* CellSplit::join_taken(UnionFind& joined) const {
   std::vector<std::uint8_t> way(faces_.pieces.size(), 0);
   for (const Taken& taken : taken_) way[taken.piece] = taken.reversed ? 2 : 1;
@@ -370,7 +391,7 @@ const char* CellSplit::join_taken(UnionFind& joined) const {
       joined.join(*first, use.piece);
     }
     if (forward != reversed) return "a piece of a cell is not closed";
-    if (forward > 1) return "a piece of a cell touches itself";
+    if (forward > 1 && !is_touched_wall(uses, way)) return "a piece of a cell touches itself";
   }
   return nullptr;
 }

@@ -6,11 +6,14 @@
 
 #include <ShapeAnalysis_Surface.hxx>
 #include <algorithm>
+#include <cmath>
 #include <map>
+#include <numbers>
 
 #include "lattice/template_mesh.hpp"
 #include "meso/brep/placement.hpp"
 #include "test_crescents.hpp"
+#include "unrolled_mesh.hpp"
 
 namespace meso::brep {
 namespace {
@@ -102,6 +105,25 @@ TEST(ParametersOn, RiseWherePointsAreInTheWrongOrder) {
   const std::vector<double> turned = parameters_on(edge, {{0.5, 0, 0}, {0.4, 0, 0}, {0.6, 0, 0}});
   ASSERT_EQ(turned.size(), 3u);
   EXPECT_TRUE(0 < turned[0] && turned[0] < turned[1] && turned[1] < turned[2] && turned[2] < 1);
+}
+
+/// A bow tie of that many points on the plane z = 0, whose lobes go round in opposite directions.
+BorderLoop bow_tie(int points) {
+  BorderLoop loop;
+  for (int i = 0; i < points; ++i) {
+    const double t = 2 * std::numbers::pi * i / points;
+    const Vec3 p{std::cos(t), std::sin(2 * t), 0};
+    loop.push_back({p, {p.x, p.y}});
+  }
+  return loop;
+}
+
+TEST(UnrolledMesh, PointsWithoutAPlaceHaveNoTriangles) {
+  const Handle(Geom_Plane) plane = new Geom_Plane(gp::XOY());
+  EXPECT_TRUE(unrolled_mesh(plane, {bow_tie(40)}));
+  BorderLoop loop = bow_tie(40);
+  loop[7].at[0] = std::nan("");
+  EXPECT_FALSE(unrolled_mesh(plane, {loop}));
 }
 
 }  // namespace

@@ -27,6 +27,18 @@ TopoDS_Shell all_faces(const TopoDS_Shape& solid) {
   return shell;
 }
 
+/// Of one edge: a face and whether it uses the edge reversed.
+using FaceUses = std::vector<std::pair<std::uint32_t, bool>>;
+
+/// Of an edge along which a body touches a wall: puts the wall and the face of the skin on either side next to each
+/// other. False if it is no such edge.
+template <typename IsWall>
+bool are_two_wedges(FaceUses& uses, const IsWall& is_wall) {
+  if (uses.size() != 4) return false;
+  std::ranges::sort(uses, {}, [&](const auto& use) { return std::pair(is_wall(use.first) == use.second, use.second); });
+  return is_wall(uses[0].first) != is_wall(uses[1].first) && is_wall(uses[2].first) != is_wall(uses[3].first);
+}
+
 class Builder {
  public:
   Builder(const CellShape& cell, Quotient& quotient, double tolerance)
@@ -224,20 +236,23 @@ bool Builder::add_faces(const RunOptions& run) {
 /// wall between several must not tie them together, because it may not show: they are then joined edge by edge where it
 /// does.
 bool Builder::find_clusters(CellKind& kind, const std::vector<std::uint32_t>& face_lumps) {
-  std::map<std::pair<std::uint32_t, Index3>, std::vector<std::pair<std::uint32_t, bool>>> at_edge;
+  std::map<std::pair<std::uint32_t, Index3>, FaceUses> at_edge;
   for (std::uint32_t f = 0; f < kind.faces.size(); ++f)
     for (const auto& loop : geometry_.faces[kind.faces[f].face].loops)
       for (const Coedge& use : loop)
         if (!geometry_.edges[use.edge].degenerate) at_edge[{use.edge, use.offset}].push_back({f, use.reversed});
   UnionFind sets(kind.faces.size());
   std::vector<std::set<std::uint32_t>> beside(kind.faces.size());  // of a wall: faces of the skin
-  for (const auto& [edge, uses] : at_edge) {
-    if (uses.size() != 2 || uses[0].second == uses[1].second) return false;
-    const auto [a, b] = std::pair(uses[0].first, uses[1].first);
-    const bool wall_a = kind.faces[a].axis >= 0, wall_b = kind.faces[b].axis >= 0;
-    if (!wall_a && !wall_b) sets.join(a, b);
-    if (wall_a && !wall_b) beside[a].insert(b);
-    if (wall_b && !wall_a) beside[b].insert(a);
+  const auto is_wall = [&](std::uint32_t f) { return kind.faces[f].axis >= 0; };
+  for (auto& [edge, uses] : at_edge) {
+    if (uses.size() != 2 && !are_two_wedges(uses, is_wall)) return false;
+    for (std::size_t i = 0; i < uses.size(); i += 2) {
+      if (uses[i].second == uses[i + 1].second) return false;
+      const auto [a, b] = std::pair(uses[i].first, uses[i + 1].first);
+      if (!is_wall(a) && !is_wall(b)) sets.join(a, b);
+      if (is_wall(a) && !is_wall(b)) beside[a].insert(b);
+      if (is_wall(b) && !is_wall(a)) beside[b].insert(a);
+    }
   }
   std::vector<std::uint32_t> skin(kind.faces.size());
   for (std::uint32_t f = 0; f < skin.size(); ++f) skin[f] = sets.root(f);

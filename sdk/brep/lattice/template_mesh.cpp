@@ -145,30 +145,6 @@ class Segments {
   std::map<std::pair<PointName, PointName>, int> counts_;
 };
 
-/// Less shows nowhere; and edges that are known to no more may cross.
-double negligible_fold(const TopoDS_Face& face, const MeshFineness& fineness) {
-  double out = 1e-3 * fineness.deflection;
-  for (TopExp_Explorer it(face, TopAbs_EDGE); it.More(); it.Next())
-    out = std::fmax(out, 2 * BRep_Tool::Tolerance(TopoDS::Edge(it.Current())));
-  return out;
-}
-
-/// As the triangles are, not as the parameters are that they were made in.
-bool is_folded(const Triangulation& mesh, const Poly_Triangulation& made, const TopoDS_Face& face,
-               const Template& geometry, const MeshFineness& fineness) {
-  const Handle(Geom_Surface) surface = BRep_Tool::Surface(face);
-  if (GeomAdaptor_Surface(surface).GetType() == GeomAbs_Plane || !made.HasUVNodes()) return false;
-  std::vector<BorderPoint> points;
-  for (std::size_t i = 0; i < mesh.points.size(); ++i) {
-    const gp_Pnt2d at = made.UVNode(static_cast<int>(i) + 1);
-    points.push_back({mesh.points[i].point + cell_origin(geometry, mesh.points[i].offset), {at.X(), at.Y()}});
-  }
-  auto triangles = mesh.triangles;
-  if (face.Orientation() == TopAbs_REVERSED)
-    for (auto& t : triangles) std::swap(t[1], t[2]);
-  return fold_of(surface, points, triangles) > negligible_fold(face, fineness);
-}
-
 /// OpenCASCADE's triangles, if they reach the edges and are not folded.
 std::optional<Triangulation> own_mesh(const TopoDS_Face& face, const TemplateEdges& kind, const Template& geometry,
                                       const EdgePolygons& polygons, const MeshFineness& fineness) {
@@ -222,7 +198,9 @@ std::optional<Triangulation> own_mesh(const TopoDS_Face& face, const TemplateEdg
   for (const auto& [nodes, reversed] : borders)
     for (std::size_t k = 0; k + 1 < nodes.size(); ++k)
       segments.add(out.points[nodes[k]], out.points[nodes[k + 1]], reversed ? 1 : -1);
-  if (!segments.cancel() || is_folded(out, *mesh, face, geometry, fineness)) return {};
+  std::vector<Vec3> places;
+  for (const MeshPoint& p : out.points) places.push_back(place_of(p, geometry));
+  if (!segments.cancel() || is_folded(face, places, out.triangles, fineness.deflection)) return {};
   return out;
 }
 
@@ -251,7 +229,7 @@ bool is_meshed(const TopoDS_Face& face, const TemplateEdges& kind, const Templat
     return false;
   }
   if (take_points(face, kind, geometry, polygons, wanted.taken)) return false;
-  if (unrolled && unrolled->fold <= negligible_fold(face, fineness)) return true;
+  if (unrolled && unrolled->fold <= negligible_fold(face, fineness.deflection)) return true;
   for (TopExp_Explorer edge(face, TopAbs_EDGE); edge.More(); edge.Next())
     wanted.coarse[kind.match_of(TopoDS::Edge(edge.Current())).edge] = true;
   return false;

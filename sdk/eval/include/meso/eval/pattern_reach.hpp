@@ -22,7 +22,8 @@ using MayReach = std::function<bool(const PlacedCell&)>;
 
 /// where cells at records are to cut a body, one of them at least reaches it. Of cells that are placed
 /// otherwise, none may: that is a warning for a difference (PATTERN_MISSES_PART). An intersection with several cells
-/// warns where the body is smaller than each of those there (BODY_WITHIN_CELL). Also check_keeps_any(). `body_mm` holds
+/// warns where the body is smaller than each of those there (BODY_WITHIN_CELL), a difference where there are no cells
+/// (PATTERN_KEEPS_NONE). Also check_keeps_any(). `body_mm` holds
 /// the body so far; empty: there is none yet. `may_reach` is asked for cells whose boxes touch that; an engine that
 /// finds out later leaves it empty and uses must_reach(). False after an error.
 [[nodiscard]] bool check_reach(const Evaluation& evaluation, const CellStream& cells, const Apply& apply,
@@ -32,5 +33,8 @@ using MayReach = std::function<bool(const PlacedCell&)>;
 [[nodiscard]] bool must_reach(const CellStream& cells, const Apply& apply);
 /// FIELD_MISSES_PART.
 void report_no_reach(const Evaluation& evaluation, const CellStream& cells, const Part& part, DiagnosticSink& sink);
+
+/// GEOMETRY_EMPTY, and where the cells of its patterns are, or that there are none.
+[[nodiscard]] Diagnostic empty_part(const Evaluation& evaluation, const Part& part);
 
 }  // namespace meso::eval
