@@ -9,7 +9,7 @@
 namespace meso {
 namespace {
 
-using Corners = std::array<Vec3, 3>;
+using Corners = Triangle;
 using Cell = std::array<std::int64_t, 3>;
 
 Box3 box_of(const Corners& t) {
@@ -52,6 +52,8 @@ bool coplanar_overlap(const Corners& s, const Corners& t) {
   return !separates(s, t) && !separates(t, s);
 }
 
+}  // namespace
+
 bool triangles_meet(const Corners& s, const Corners& t) {
   for (std::size_t i = 0; i < 3; ++i) {
     if (segment_meets(s[i], s[(i + 1) % 3], t) || segment_meets(t[i], t[(i + 1) % 3], s)) return true;
@@ -59,6 +61,8 @@ bool triangles_meet(const Corners& s, const Corners& t) {
   const bool coplanar = std::all_of(t.begin(), t.end(), [&](Vec3 p) { return orientation(s[0], s[1], s[2], p) == 0; });
   return coplanar && coplanar_overlap(s, t);
 }
+
+namespace {
 
 /// The shortest way along the normal of t that takes s to one side of it.
 double way_out(const Corners& s, const Corners& t) {
@@ -207,6 +211,17 @@ SelfContacts count_self_contacts(const TriangleMesh& mesh, std::span<const doubl
     return out.deep < limit;
   });
   return out;
+}
+
+std::vector<std::array<std::uint32_t, 2>> deep_self_contacts(const TriangleMesh& mesh, std::span<const double> heights,
+                                                             std::size_t limit) {
+  std::vector<std::array<std::uint32_t, 2>> pairs;
+  visit_pairs(mesh, SharedPoint::skipped,
+              [&](std::uint32_t i, std::uint32_t j, const Corners& s, const Corners& t, Vec3) {
+                if (!(std::min(way_out(s, t), way_out(t, s)) <= heights[i] + heights[j])) pairs.push_back({i, j});
+                return pairs.size() < limit;
+              });
+  return pairs;
 }
 
 // Where a surface of curvature k turns by t between the middles of two triangles of altitudes g and h over their common

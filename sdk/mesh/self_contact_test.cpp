@@ -36,6 +36,28 @@ TEST(SelfContact, FindsCrossingBodies) {
   EXPECT_EQ(count_self_contacts(mesh, {}, 1).pairs, 1U);
 }
 
+TEST(SelfContact, TellsWhichTrianglesCross) {
+  TriangleMesh mesh;
+  add_tetrahedron(mesh, {0, 0, 0}, 1);
+  add_tetrahedron(mesh, {0.1, 0.1, -0.5}, 1);
+  add_tetrahedron(mesh, {3, 3, 3}, 1);
+  const std::vector<double> none(mesh.triangles.size(), 0), large(mesh.triangles.size(), 1);
+  const auto pairs = deep_self_contacts(mesh, none, 100);
+  EXPECT_EQ(pairs.size(), count_self_contacts(mesh, none).deep);
+  for (const auto& [s, t] : pairs) {
+    EXPECT_LT(s, 4u);  // one triangle of each of the two
+    EXPECT_TRUE(t >= 4 && t < 8);
+    const auto corners = [&](std::uint32_t i) {
+      const auto& [a, b, c] = mesh.triangles[i];
+      return Triangle{mesh.points[a], mesh.points[b], mesh.points[c]};
+    };
+    EXPECT_TRUE(triangles_meet(corners(s), corners(t)));
+    EXPECT_FALSE(triangles_meet(corners(s), corners(9)));
+  }
+  EXPECT_EQ(deep_self_contacts(mesh, none, 2).size(), 2u);
+  EXPECT_TRUE(deep_self_contacts(mesh, large, 100).empty());
+}
+
 /// A ring of `sides` flat strips around the z axis, each two triangles.
 void add_prism(TriangleMesh& mesh, Vec3 at, double radius, std::uint32_t sides, double turn) {
   const auto n = static_cast<std::uint32_t>(mesh.points.size());

@@ -12,6 +12,7 @@
 #include "meso/base/number.hpp"
 #include "refine_mesh.hpp"
 #include "simplify_mesh.hpp"
+#include "untangle_mesh.hpp"
 
 namespace meso::implicit {
 namespace {
@@ -104,6 +105,9 @@ class Making {
   bool take_refined();
   bool thin();
   bool simplify();
+  bool takes_over(double bound, std::vector<char>& kept);
+  void measure_marked(TriangleMesh mesh, std::span<const char> marked, double bound);
+  bool untangle();
   void measure(TriangleMesh mesh, bool may_move, double tolerance);
   [[nodiscard]] Diagnostic not_reached(double bound) const;
   [[nodiscard]] Diagnostic takes(double triangles, double least_bytes = 0) const;
@@ -603,6 +607,69 @@ bool Making::simplify() {
   return true;
 }
 
+// Takes what was measured again, unless that is too far: there, all is to be kept the next time.
+bool Making::takes_over(double bound, std::vector<char>& kept) {
+  const bool is_near = refinable_->distance() <= std::max(bound, out_.distance);
+  if (is_near) {
+    out_.mesh = refinable_->mesh();
+    out_.distance = std::max(out_.distance, refinable_->distance());
+  } else {
+    refinable_->mark_around_far(bound, feet_->cell(), out_.mesh.points, kept);
+  }
+  kept.resize(out_.mesh.points.size(), 0);
+  return is_near;
+}
+
+void Making::measure_marked(TriangleMesh mesh, std::span<const char> marked, double bound) {
+  refinable_.emplace(std::move(mesh), out_.grid.box, *feet_, false);
+  refinable_->take_as_known(marked);
+  refinable_->measure_points(bound);
+  refinable_->measure(bound);
+}
+
+// Where walls end beside each other. Where no change within the tolerance takes a few triangles apart, they are halved
+// for it: that is kept if fewer are left then.
+bool Making::untangle() {
+  constexpr int most_attempts = 4, most_rounds = 8;
+  constexpr std::size_t few_left = 100;
+  const double bound = options_.simplify > 0 ? options_.simplify : options_.tolerance;
+  std::vector<char> kept(out_.mesh.points.size(), 0);
+  const auto has_any = [](const std::vector<char>& marks) { return std::ranges::count(marks, 1) > 0; };
+  TriangleMesh fewest = out_.mesh;
+  std::size_t left = SIZE_MAX;
+  for (int attempt = 0; attempt < most_attempts; ++attempt) {
+    run_.report("untangling", static_cast<double>(attempt) / most_attempts);
+    refinable_.reset();
+    TriangleMesh mesh = out_.mesh;
+    Untangled marks = untangle_mesh(mesh, out_.grid.box, *feet_, bound, kept, run_);
+    if (!go_on()) return false;
+    if (has_any(marks.changed)) {
+      measure_marked(std::move(mesh), marks.changed, bound);
+      refinable_->measure_creases(bound);
+      if (!takes_over(bound, kept)) continue;
+    }
+    if (marks.left >= left) break;
+    fewest = out_.mesh;
+    left = marks.left;
+    for (std::size_t p = 0; p < marks.stuck.size(); ++p)
+      if (kept[p] != 0) marks.stuck[p] = 0;
+    if (!has_any(marks.stuck) || left > few_left || attempt + 1 == most_attempts) break;
+    measure_marked(out_.mesh, marks.stuck, bound);
+    refinable_->take_as_far(marks.stuck, bound);
+    for (int round = 0; round < most_rounds && refinable_->refine(bound) > 0; ++round) {
+      refinable_->measure(bound);
+      refinable_->merge(bound);
+      refinable_->measure(bound);
+      refinable_->flip(bound);
+    }
+    if (!go_on()) return false;
+    (void)takes_over(bound, kept);
+  }
+  out_.mesh = std::move(fewest);
+  drop_unused_points(out_.mesh);
+  return true;
+}
+
 std::optional<AccurateMesh> Making::make(Grid grid) {
   if (options_.tolerance > 0) {
     if (!to_tolerance(grid)) return std::nullopt;
@@ -610,6 +677,7 @@ std::optional<AccurateMesh> Making::make(Grid grid) {
     if (!contour_on(grid)) return std::nullopt;
   }
   if (options_.simplify > 0 && !out_.mesh.triangles.empty() && !simplify()) return std::nullopt;
+  if (!out_.mesh.triangles.empty() && !untangle()) return std::nullopt;
   if (left_) diagnostics_.report(*left_);
   forget_foreseen_memory();
   out_.grid_samples = counts_.on_grids;

@@ -294,6 +294,30 @@ TEST(AccurateMesh, ComesAsCloseToSheetsThatAreCut) {
   EXPECT_LT(audit.triangles, 30'000u);
 }
 
+// A network that a ball cuts at all angles: tips of several sheets stand within the tolerance, and the grid has points
+// on the ball.
+double cut_network(Vec3 p) { return std::max((gyroid(p, 1.0 / 3) - p.z) / (2 * pi * 3 * 1.5), norm(p) - 1); }
+
+TEST(AccurateMesh, HasFewSheetsThroughEachOther) {
+  constexpr double tolerance = 1e-2;
+  for (const double simplify : {0.0, tolerance}) {
+    DiagnosticSink told;
+    auto result =
+        make_accurate_mesh(on(cut_network), {.box = cube()},
+                           {.tolerance = tolerance, .simplify = simplify, .smallest_feature = 1.0 / 12}, {}, told);
+    ASSERT_TRUE(result);
+    EXPECT_FALSE(told.has_errors());
+    for (Vec3& p : result->mesh.points)  // as files have them
+      for (std::size_t axis = 0; axis < 3; ++axis) p[axis] = static_cast<double>(static_cast<float>(p[axis]));
+    const MeshAudit audit = audit_mesh(result->mesh);
+    EXPECT_TRUE(audit.watertight());
+    EXPECT_EQ(audit.degenerate, 0u);
+    EXPECT_LE(result->distance, tolerance);
+    // 104 and 73 where nothing is taken apart.
+    EXPECT_LT(count_self_contacts(result->mesh, chord_heights(result->mesh)).deep, 20u);
+  }
+}
+
 TEST(AccurateMesh, SimplifiesABoxToItsCorners) {
   const auto box = [](Vec3 p) {
     return std::max({std::fabs(p.x) - 0.61, std::fabs(p.y) - 0.52, std::fabs(p.z) - 0.43});

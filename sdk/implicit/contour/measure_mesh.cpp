@@ -36,6 +36,26 @@ double peak_of(std::span<const double> height) {
 
 }  // namespace
 
+void RefinableMesh::take_as_known(std::span<const char> marked) {
+  for (std::uint32_t t = 0; t < known_.size(); ++t) {
+    const auto& corners = mesh_.triangles[t];
+    for (std::size_t side = 0; side < 3; ++side)
+      if (marked[corners[side]] == 0 || marked[corners[(side + 1) % 3]] == 0) known_[t].edge[side] = 0;
+    if (std::ranges::any_of(corners, [&](std::uint32_t p) { return marked[p] == 0; })) known_[t].middle = 0;
+  }
+  for (std::size_t p = 0; p < distances_.size(); ++p)
+    if (marked[p] == 0) distances_[p] = 0;
+}
+
+void RefinableMesh::take_as_far(std::span<const char> marked, double tolerance) {
+  for (std::uint32_t t = 0; t < known_.size(); ++t)
+    for (std::size_t side = 0; side < 3; ++side) {
+      const Edge edge = edge_of(t, side);
+      if (marked[edge.a] != 0 && marked[edge.b] != 0 && norm(mesh_.points[edge.a] - mesh_.points[edge.b]) > tolerance)
+        known_[t].edge[side] = static_cast<float>(2 * tolerance);
+    }
+}
+
 void RefinableMesh::measure_points(double tolerance) {
   std::vector<PointNearSurface> off;
   std::vector<std::size_t> which;

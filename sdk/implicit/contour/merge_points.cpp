@@ -65,15 +65,16 @@ void RefinableMesh::merge(double tolerance) {
     if (!to_a && (planes_[a] & ~planes_[b]) != 0) continue;
     const std::uint32_t from = to_a ? b : a, onto = to_a ? a : b;
     if (norm(mesh_.points[from] - mesh_.points[onto]) > nothing * tolerance) continue;
-    bool stays_wide = true;
+    bool stays_wide = true;  // one without area may have to go with the next of several such points
     links.visit_triangles(from, [&](std::uint32_t t) {
       if (links.is_corner(t, onto)) return;
-      Triangle corners;
+      Triangle before, after;
       for (std::size_t i = 0; i < 3; ++i) {
         const std::uint32_t p = mesh_.triangles[t][i];
-        corners[i] = mesh_.points[p == from ? onto : p];
+        before[i] = mesh_.points[p];
+        after[i] = mesh_.points[p == from ? onto : p];
       }
-      stays_wide = stays_wide && width_of(corners) > narrow;
+      stays_wide = stays_wide && (width_of(after) > narrow || !(width_of(before) > narrow));
     });
     if (!stays_wide) continue;
     if (links.stays_manifold(from, onto) || links.unfold(from, onto)) {
@@ -108,20 +109,23 @@ void RefinableMesh::merge(double tolerance) {
   known_.resize(kept);
 }
 
-// Without the points that no triangle has.
-TriangleMesh RefinableMesh::take() {
-  std::vector<std::uint32_t> number(mesh_.points.size(), gone);
-  for (const auto& t : mesh_.triangles)
+void drop_unused_points(TriangleMesh& mesh) {
+  std::vector<std::uint32_t> number(mesh.points.size(), gone);
+  for (const auto& t : mesh.triangles)
     for (const std::uint32_t p : t) number[p] = 0;
   std::uint32_t kept = 0;
   for (std::size_t p = 0; p < number.size(); ++p) {
     if (number[p] == gone) continue;
-    mesh_.points[kept] = mesh_.points[p];
+    mesh.points[kept] = mesh.points[p];
     number[p] = kept++;
   }
-  mesh_.points.resize(kept);
-  for (auto& t : mesh_.triangles)
+  mesh.points.resize(kept);
+  for (auto& t : mesh.triangles)
     for (std::uint32_t& p : t) p = number[p];
+}
+
+TriangleMesh RefinableMesh::take() {
+  drop_unused_points(mesh_);
   return std::move(mesh_);
 }
 

@@ -27,12 +27,19 @@ inline constexpr std::size_t asked_at_once = 1 << 14;
 /// sixteenth, so most are nearer than is asked in the end.
 [[nodiscard]] inline double parts_for(double times) { return times > 1 ? 1.8 * times : 1; }
 
+/// Points that no triangle has.
+void drop_unused_points(TriangleMesh& mesh);
+
 /// Triangles of a mesh with what is known of them.
 class RefinableMesh {
  public:
   /// `smooth`: the surface has no edges, and the mesh is about as fine as its curves.
   RefinableMesh(TriangleMesh mesh, const Box3& box, SurfaceFeet& feet, bool smooth);
 
+  /// Only what is between marked points is measured.
+  void take_as_known(std::span<const char> marked);
+  /// Edges between marked points count as too far.
+  void take_as_far(std::span<const char> marked, double tolerance);
   /// Moves vertices that are farther than a tenth of `tolerance` onto the surface.
   void move_vertices(double tolerance);
   /// Measures how far vertices are that are not on the surface.
@@ -72,7 +79,7 @@ class RefinableMesh {
   [[nodiscard]] bool found_creases() const { return !missed_.empty(); }
 
   [[nodiscard]] const TriangleMesh& mesh() const { return mesh_; }
-  /// Ends the use of this.
+  /// Without points that no triangle has. Ends the use of this.
   [[nodiscard]] TriangleMesh take();
 
   static constexpr std::uint64_t bytes_per_triangle = 160;

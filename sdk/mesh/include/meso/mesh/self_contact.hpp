@@ -15,13 +15,14 @@
 // surfaces themselves cross. How deep is the shortest way along the normal of either triangle that parts the two.
 // Cost: about 1 us a triangle for evenly sized triangles, 60 bytes each. Thread rule: pure.
 
+#include <array>
 #include <cstdint>
 #include <limits>
 #include <optional>
 #include <span>
 #include <vector>
 
-#include "meso/base/triangle_mesh.hpp"
+#include "meso/base/triangle_stream.hpp"
 
 namespace meso {
 
@@ -40,6 +41,14 @@ enum class SharedPoint { skipped, tested };
 [[nodiscard]] SelfContacts count_self_contacts(const TriangleMesh& mesh, std::span<const double> heights = {},
                                                std::uint64_t limit = std::numeric_limits<std::uint64_t>::max(),
                                                SharedPoint shared = SharedPoint::skipped);
+
+/// The deep ones of these pairs, each as its triangles' numbers, up to a limit.
+[[nodiscard]] std::vector<std::array<std::uint32_t, 2>> deep_self_contacts(const TriangleMesh& mesh,
+                                                                           std::span<const double> heights,
+                                                                           std::size_t limit);
+
+/// Whether two triangles have a point in common; decided as above.
+[[nodiscard]] bool triangles_meet(const Triangle& s, const Triangle& t);
 
 /// How far each triangle is off a smooth surface through its corners, as the turn from its neighbours tells. Turns of
 /// more than a radian are edges of the body.
