@@ -621,7 +621,7 @@ bool Making::takes_over(double bound, std::vector<char>& kept) {
 }
 
 void Making::measure_marked(TriangleMesh mesh, std::span<const char> marked, double bound) {
-  refinable_.emplace(std::move(mesh), out_.grid.box, *feet_, false);
+  refinable_.emplace(std::move(mesh), out_.grid.box, *feet_, false, marked);
   refinable_->take_as_known(marked);
   refinable_->measure_points(bound);
   refinable_->measure(bound);

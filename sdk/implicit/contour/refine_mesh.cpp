@@ -14,14 +14,18 @@ constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
 
 }  // namespace
 
-RefinableMesh::RefinableMesh(TriangleMesh mesh, const Box3& box, SurfaceFeet& feet, bool smooth)
+RefinableMesh::RefinableMesh(TriangleMesh mesh, const Box3& box, SurfaceFeet& feet, bool smooth,
+                             std::span<const char> marked)
     : mesh_(std::move(mesh)),
       box_(box),
       feet_(feet),
       smooth_(smooth),
       known_(mesh_.triangles.size()),
       points_before_(mesh_.points.size()) {
-  feet_.slopes(mesh_.points, gradients_, values_);
+  if (marked.empty())
+    feet_.slopes(mesh_.points, gradients_, values_);
+  else
+    look_around(marked);
   for (const Vec3& p : mesh_.points) planes_.push_back(planes_of(box_, p));
   // Points that have triangles in the box's sides only are where they belong. The others are in a cell that the surface
   // crosses, or beside it: a flat field tells of more.
@@ -34,6 +38,22 @@ RefinableMesh::RefinableMesh(TriangleMesh mesh, const Box3& box, SurfaceFeet& fe
       distances_[p] = static_cast<float>(std::isfinite(distance) ? std::min(distance, most) : 0);
     }
   }
+}
+
+void RefinableMesh::look_around(std::span<const char> marked) {
+  std::vector<char> is_near(mesh_.points.size(), 0);
+  for (const auto& t : mesh_.triangles)
+    if (std::ranges::any_of(t, [&](std::uint32_t p) { return marked[p] != 0; }))
+      for (const std::uint32_t p : t) is_near[p] = 1;
+  std::vector<std::size_t> which;
+  std::vector<Vec3> places, gradients;
+  std::vector<double> values;
+  for (std::size_t p = 0; p < is_near.size(); ++p)
+    if (is_near[p] != 0) which.push_back(p), places.push_back(mesh_.points[p]);
+  feet_.slopes(places, gradients, values);
+  gradients_.assign(mesh_.points.size(), {});
+  values_.assign(mesh_.points.size(), 0);
+  for (std::size_t i = 0; i < which.size(); ++i) gradients_[which[i]] = gradients[i], values_[which[i]] = values[i];
 }
 
 void RefinableMesh::move_vertices(double tolerance) {

@@ -33,8 +33,9 @@ void drop_unused_points(TriangleMesh& mesh);
 /// Triangles of a mesh with what is known of them.
 class RefinableMesh {
  public:
-  /// `smooth`: the surface has no edges, and the mesh is about as fine as its curves.
-  RefinableMesh(TriangleMesh mesh, const Box3& box, SurfaceFeet& feet, bool smooth);
+  /// `smooth`: the surface has no edges, and the mesh is about as fine as its curves. Where points are `marked`, the
+  /// field is asked at those alone and at their neighbours: see take_as_known.
+  RefinableMesh(TriangleMesh mesh, const Box3& box, SurfaceFeet& feet, bool smooth, std::span<const char> marked = {});
 
   /// Only what is between marked points is measured.
   void take_as_known(std::span<const char> marked);
@@ -85,6 +86,7 @@ class RefinableMesh {
   static constexpr std::uint64_t bytes_per_triangle = 160;
 
  private:
+  void look_around(std::span<const char> marked);
   static constexpr float unknown = std::numeric_limits<float>::infinity();
   /// Distances are negative where the middle is inside.
   struct Known {
